@@ -1,9 +1,9 @@
 """Run every benchmark and print its table: `make bench`, or `python -m benchmarks assembly`.
 
-Those of accuracy alone come first, one on each core; those that measure times follow one by one.
-With --record a table also goes to docs/measured/NAME.md, with the day and the machine, for the page
-of the documentation that includes it. `--pins N` is how many pins `places` draws at random,
-`--edits N` how many edits.
+Benchmarks of accuracy run first, one on each core; those that measure times follow one by one. With
+--record a table is also written to docs/measured/NAME.md, with the day and the machine, for the
+page of the documentation that includes it. `--pins N` is the number of pins that `places` draws at
+random, `--edits N` the number of edits.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ from benchmarks.space import many_bodies, peers_space
 from pinbase.processes.pool import Job, ProcessDied, Tell, cores, in_parallel
 
 ACCURACY = {
-    "coverage": coverage.contained,  # the longest first
+    "coverage": coverage.contained,  # first, since it takes longest
     "failures": failures.failures,
     "tension": tension.tension,
     "corners": coverage.singular,
@@ -128,7 +128,7 @@ TIMES = {
 }
 ALL = ACCURACY | TIMES
 COUNTED = ("--pins", "places", places.places), ("--edits", "edits", edits.edits)
-ABREAST = max(2, cores())  # with 1 they would not be processes
+ABREAST = max(2, cores())  # with 1, benchmarks would not run in processes of their own
 
 
 def main(arguments: list[str]) -> int:
@@ -166,7 +166,7 @@ def _made(names: list[str]) -> Iterator[tuple[str, str | ProcessDied]]:
     first = [n for n in names if n in ACCURACY]
     yield from zip(first, in_parallel([job(n) for n in first], ABREAST), strict=True)
     for name in names:
-        if name in TIMES:  # each in its own process too: memory is that of one benchmark
+        if name in TIMES:  # each in its own process, so that memory is that of one benchmark
             (made,) = in_parallel([job(name)], ABREAST)
             yield name, made
 

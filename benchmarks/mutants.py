@@ -1,12 +1,14 @@
 """Mutation testing of formulas: `make mutants`, or `python -m benchmarks.mutants FILE`.
 
-One operator, comparison, sign or number of a file is changed at a time, and the tests that belong
-to the file must fail. Nothing is written to the tree: a forked process, in which pytest and the
-numeric libraries are loaded already, imports the changed module in place of the file. mutmut does
-the like, but neither in tables of numbers nor in properties, where many of these formulas are.
+One operator, comparison, sign or number of a file is changed at a time; the tests of the file must
+then fail. Nothing is written to the tree: a forked process, in which pytest and the numeric
+libraries are loaded already, imports the changed module in place of the file. mutmut works in a
+similar way, but changes neither tables of numbers nor properties, in which many of these formulas
+are.
 
-Survivors that say the same as the file are in SAME with the reason; any other ends the command with
-status 1. With --record the rows of the files that were tried replace those in docs/measured.
+Changes that no test detects because the file means the same are in SAME with the reason; any other
+such change ends the command with status 1. With --record the rows of the tested files replace those
+in docs/measured.
 """
 
 from __future__ import annotations
@@ -61,7 +63,7 @@ ARITHMETIC = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: as
               ast.Pow: ast.Mult, ast.MatMult: ast.Mult}  # fmt: skip
 COMPARISON = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt,
               ast.Eq: ast.NotEq, ast.NotEq: ast.Eq}  # fmt: skip
-# Changes of a line that say the same, and why: no test could notice them.
+# Changes of a line that do not change the result, with the reason; no test could detect them.
 SAME = {
     ("return (tuple(Traction(b.name, 0.0, ABOUT_Z * b.radius, _NO_TRACTION) for b in bands),)",
      "0.0 → 1.0"): "the middle from which a slope of zero is counted",
@@ -72,14 +74,14 @@ SAME = {
     ("return float(brentq(function, low, high, xtol=1e-15, rtol=1e-15))",
      "1e-15 → 1.1000000000000001e-15"): "both tolerances are round-off",
 }  # fmt: skip
-OFF = 1.1  # times a number
-MOST = 40  # mutants of a file, drawn at random
-PATIENCE = 10.0  # times what the tests take without a change
+OFF = 1.1  # factor by which a number is changed
+MOST = 40  # largest number of mutants of a file, drawn at random
+PATIENCE = 10.0  # time limit over the time of the tests without a change
 
 
 @dataclass(frozen=True)
 class Mutant:
-    """A changed module, and what was changed in words."""
+    """A changed module. change: in words."""
 
     line: int
     change: str
@@ -87,7 +89,7 @@ class Mutant:
 
 
 def mutants(source: str) -> Iterator[Mutant]:
-    """Every single change of a module."""
+    """Yield every single change of a module."""
     tree = ast.parse(source)
     nodes = list(ast.walk(tree))
     for place, node in enumerate(nodes):
@@ -125,7 +127,7 @@ def _changed(node: ast.AST) -> ast.expr | None:
 
 
 class _Instead:
-    """Finds and loads a changed module where its file would be."""
+    """An import finder and loader that loads a changed module in place of its file."""
 
     def __init__(self, name: str, path: str, tree: ast.Module) -> None:
         self.name, self.path, self.tree = name, path, tree
@@ -143,10 +145,12 @@ class _Instead:
 
 
 def survives(path: str, tree: ast.Module, tests: Sequence[str], limit: float) -> bool:
-    """Whether all tests pass with a changed module; not if they take longer than the limit, s."""
+    """Return whether all tests pass with a changed module; they fail if they take longer than the
+    limit, s.
+    """
     child = os.fork()
     if not child:
-        os.setsid()  # with the processes it starts
+        os.setsid()  # a group with the processes that it starts, which is killed together
         sys.meta_path.insert(0, _Instead(path[:-3].replace("/", "."), path, tree))
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, 1)
@@ -165,7 +169,11 @@ def survives(path: str, tree: ast.Module, tests: Sequence[str], limit: float) ->
 
 
 def examined(path: str, most: int) -> tuple[list[str], bool]:
-    """Rows of the table for a file, the first for all of it, and whether all is explained."""
+    """Return the rows of the table for a file, the first for all of it, and whether every survivor
+    is explained.
+
+    Raises: SystemExit if the tests fail without a change.
+    """
     with open(path, encoding="utf-8") as file:
         source = file.read()
     start = time.monotonic()
@@ -185,7 +193,7 @@ def examined(path: str, most: int) -> tuple[list[str], bool]:
 
 
 def recorded() -> dict[str, list[str]]:
-    """Rows of every file in the table as it is."""
+    """Return the rows of every file in the recorded table."""
     path, out = FOLDER / "mutants.md", dict[str, list[str]]()
     for row in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
         if first := re.match(r"\| `([\w/]+\.py)` \|", row):
@@ -196,13 +204,15 @@ def recorded() -> dict[str, list[str]]:
 
 
 def table(rows: dict[str, list[str]]) -> str:
-    """The table of all files, in their order."""
+    """Return the table of all files, in their order."""
     lines = ["| file | changes | tried | noticed | left | because |", "| --- |" + 5 * " --- |"]
     return "\n".join(lines + [row for path in FILES for row in rows.get(path, ())])
 
 
 def main(arguments: list[str]) -> int:
-    """Print the table of all files or those named; --record keeps it, --most=N: so many of each."""
+    """Print the table of all files or the named ones; --record keeps it, --most=N tests N mutants
+    of each.
+    """
     named = [a for a in arguments if not a.startswith("--")]
     most = next((int(a[7:]) for a in arguments if a.startswith("--most=")), MOST)
     rows, explained = dict[str, list[str]](), True

@@ -1,4 +1,4 @@
-"""Other programs and our own solver, each in its own process, with its time and memory."""
+"""Other programs and our own solver, each in a process of its own, with its time and memory."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from pinbase.processes.threads import THREAD_VARIABLES as LIBRARIES
 
 THREADS = 2
 
-# Linux counts the largest memory of a child from before it starts its program, when it still has
-# its parent's: so the parent must be small. Ends stderr with seconds of wall time and of processor
-# time, and kB.
+# The largest memory of a child that Linux reports includes the memory of its parent, so the parent
+# must be small. The probe ends stderr with wall time and processor time, s, and memory, kB.
 PROBE = """
 import resource, subprocess, sys, time
 start = time.perf_counter()
@@ -27,13 +26,16 @@ sys.exit(status)
 
 
 class RunError(RuntimeError):
-    """A process failed; the message has the end of what it printed."""
+    """A process failed; the message contains the end of its output."""
 
 
 @dataclass(frozen=True)
 class Process:
-    """A finished process. seconds: wall time; processor: time on all cores, s; megabytes: its
-    largest memory.
+    """A finished process.
+
+    seconds: wall time.
+    processor: processor time on all cores, s.
+    megabytes: its largest memory.
     """
 
     output: str
@@ -45,7 +47,7 @@ class Process:
 def process(arguments: list[str], folder: Path) -> Process:
     """Run a command in a folder, on two threads.
 
-    Raises: RunError when its status is not 0.
+    Raises: RunError if its status is not 0.
     """
     done = subprocess.run(
         [sys.executable, "-I", "-c", PROBE, *arguments],

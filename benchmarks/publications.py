@@ -1,4 +1,4 @@
-"""Every published number compared with ours, computed from the studies."""
+"""Every published number compared with ours, which are computed from the studies."""
 
 from __future__ import annotations
 
@@ -22,23 +22,23 @@ UNKNOWNS = ("F12x", "F12y", "F32x", "F32y", "F43x", "F43y", "F14x", "F14y", "T2"
 
 
 def publications() -> str:
-    """All tables as Markdown, the stresses included, which takes minutes."""
+    """Return all tables as Markdown, including the stresses, which take minutes."""
     return page(run(load_study(STUDIES / "grenier2008.toml"))).rstrip()
 
 
 def page(stresses: Results) -> str:
-    """The tables; `stresses` are the results of the whole run of grenier2008.toml."""
+    """Return the tables. stresses: the results of the whole run of grenier2008.toml."""
     parts = [HEAD, grenier_peaks(stresses), *mechanics()]
     return "\n".join(part.rstrip() + "\n" for part in parts)
 
 
 def mechanics() -> list[str]:
-    """The parts that need no stresses."""
+    """Return the parts that need no stresses."""
     return [grenier(), bowman(), four_bar(), leg()]
 
 
 def grenier_peaks(results: Results) -> str:
-    """Maximum von Mises stress and factor of safety by pin and case."""
+    """Return maximum von Mises stress and safety factor by pin and case."""
     rows = [
         [
             p.pin,
@@ -65,7 +65,7 @@ def grenier_peaks(results: Results) -> str:
 
 
 def grenier() -> str:
-    """Reactions in landing and the motion of pin F."""
+    """Return the reactions in landing and the motion of pin F."""
     results = loads_only(load_study(STUDIES / "grenier2008.toml"))
     rows = [
         [r.connection, *(engineering(x, 7) for x in (r.published, r.ours)), f"{r.ratio:.6f}"]
@@ -91,7 +91,9 @@ def grenier() -> str:
 
 
 def bowman() -> str:
-    """The snapshot, and the printed system with its errors corrected one after the other."""
+    """Return the snapshot, and the printed system of equations with its errors corrected one by
+    one.
+    """
     results = loads_only(load_study(STUDIES / "bowman2019.toml"))
     retract = next(m for m in results.motion if m.case == "retract")
     (drive,) = (d for d in results.drive if d.time is not None)
@@ -142,7 +144,7 @@ def _corrected(results: Results) -> list[list[str]]:
 
 
 def four_bar() -> str:
-    """The printed solution, and what the crank's motion alone gives."""
+    """Return the printed solution, and the forces that follow from the crank's motion alone."""
     results = loads_only(load_study(STUDIES / "matrix_four_bar.toml"))
     return (
         f"## Four-bar by the matrix method: {results.published_source}\n\n"
@@ -152,7 +154,7 @@ def four_bar() -> str:
 
 
 def leg() -> str:
-    """The incorrect terms of the publication, which has no numbers."""
+    """Return the incorrect terms of the publication, which has no numbers."""
     errors = _table("kuleuven2014", "errors.csv")
     rows = [[r["equation"], r["quantity"], r["why"]] for r in errors]
     table = markdown.table(("equation", "quantity", "reason"), rows, (False,) * 3)

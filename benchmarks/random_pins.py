@@ -1,4 +1,4 @@
-"""Pins drawn at random, seeded: what the error estimate and the verdicts are tried on."""
+"""Pins drawn at random from a seed, on which the error estimate and the verdicts are tested."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STEEL = Material("steel", 2.0e11, 0.3, 7850.0, 1.0e9)
 
 @dataclass(frozen=True)
 class Trial:
-    """A pin, what holds it, and one case of loads."""
+    """A pin with its clamps and one case of loads."""
 
     pin: Pin
     clamps: tuple[str, ...]
@@ -23,8 +23,10 @@ class Trial:
 
 
 def trials(count: int, seed: int, fillet: tuple[float, float] | None = (0.04, 0.2)) -> list[Trial]:
-    """Pins with shoulders, one in three a tube, clamped by a thick root or in balance; `fillet`:
-    range of its radius over the thinner diameter, None for sharp corners.
+    """Return pins with shoulders, one in three a tube, clamped at a thick root or loaded in
+    equilibrium.
+
+    fillet: range of the fillet radius over the thinner diameter; None for sharp corners.
     """
     rng = np.random.default_rng(seed)
     return [_trial(rng, k, fillet) for k in range(count)]
@@ -52,7 +54,7 @@ def _trial(rng: np.random.Generator, k: int, fillet: tuple[float, float] | None)
         Segment(float(lengths[1]), thick, bore, connection="B"),
         Segment(float(lengths[2]), d, bore, connection="C"),
     )
-    rng.uniform(0.3, 0.7)  # keeps what is drawn after it
+    rng.uniform(0.3, 0.7)  # unused, but keeps the numbers that are drawn after it
     share = float((lengths[1] + lengths[2]) / (lengths[0] + 2.0 * lengths[1] + lengths[2]))
     both = np.stack([-share * force[:, 0], force[:, 0], (share - 1.0) * force[:, 0]], axis=1)
     loads = PinLoads("case", ("A", "B", "C"), both, distribution=distribution)

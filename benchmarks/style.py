@@ -1,4 +1,4 @@
-"""The style of the plots in the documentation: readable in grey, the same bytes on every run."""
+"""The style of the plots in the documentation: legible in grey, and the same bytes on every run."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ RC: Any = {
     "grid.linewidth": 0.6,
     "legend.frameon": False,
     "lines.linewidth": 1.5,
-    # A name of the study may hold dollar signs, which are no mathematics.
+    # A name of a study may contain dollar signs, which do not mark mathematics.
     "text.parse_math": False,
     "figure.constrained_layout.h_pad": 0.06,
     "figure.constrained_layout.w_pad": 0.08,
@@ -64,24 +64,24 @@ RC: Any = {
 def panels(
     rows: int, columns: int = 1, height: float = 2.2, **options: Any
 ) -> Iterator[tuple[Figure, list[Axes]]]:
-    """A figure in the house style with its axes, row by row."""
+    """Yield a figure in the house style with its axes, row by row."""
     with matplotlib.rc_context():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(RC)
-        # Figure without pyplot: no window, nothing to close.
+        # A Figure without pyplot has no window and need not be closed.
         figure = Figure(figsize=(WIDTH, height * rows + 0.5))
         axes = figure.subplots(rows, columns, squeeze=False, **options)
         yield figure, list(axes.flat)
 
 
 def line_style(index: int) -> dict[str, Any]:
-    """Colour and dashes of the line of this number; no two of the first 49 are alike."""
+    """Return colour and dashes of a line by its number; the first 49 all differ."""
     dash = (index + index // len(COLOURS)) % len(DASHES)
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": DASHES[dash]}
 
 
 def plain_numbers(axes: Axes, which: str = "both") -> None:
-    """Tick labels as engineers write them."""
+    """Format tick labels as engineers write numbers."""
     formatter: Callable[[float, int | None], str] = lambda value, _: short(value)  # noqa: E731
     for name, axis in (("x", axes.xaxis), ("y", axes.yaxis)):
         if which in (name, "both"):
@@ -89,11 +89,11 @@ def plain_numbers(axes: Axes, which: str = "both") -> None:
 
 
 def save(figure: Figure, directory: Path, name: str) -> list[Path]:
-    """Write a figure as SVG and PNG, without a date; returns both paths."""
+    """Write a figure as SVG and PNG, without a date; return both paths."""
     svg, png = directory / (name + SVG_SUFFIX), directory / (name + PNG_SUFFIX)
     if (layout := figure.get_layout_engine()) is not None:
         layout.execute(figure)
-        figure.set_layout_engine("none")  # once for both: it takes as long as drawing
+        figure.set_layout_engine("none")  # laid out once for both files, since it is slow
     figure.savefig(svg, metadata={"Date": None})
     figure.savefig(png, dpi=150, metadata={"Software": None})
     return [svg, png]

@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 
 
 def seconds(work: Callable[[], object], runs: int = 3) -> float:
-    """Least wall time of a few runs, s."""
+    """Return the least wall time of a few runs, s."""
     best = float("inf")
     for _ in range(runs):
         start = time.perf_counter()
@@ -23,7 +23,7 @@ def seconds(work: Callable[[], object], runs: int = 3) -> float:
 
 
 def table(head: tuple[str, ...], rows: Iterable[tuple[object, ...]]) -> str:
-    """A Markdown table; columns of numbers are aligned to the right."""
+    """Return a Markdown table; columns of numbers are aligned to the right."""
     body = [[_text(c) for c in row] for row in rows]
     columns = zip(*body, strict=True) if body else [()] * len(head)
     rule = ["---:" if any(c) and all(map(_numeric, c)) else "---" for c in columns]
@@ -39,5 +39,5 @@ def _numeric(cell: str) -> bool:
 
 
 def power(size: Floats, cost: Floats) -> float:
-    """The power of the size with which a cost grows, by least squares of the logarithms."""
+    """Return the power of the size with which a cost grows, by least squares of the logarithms."""
     return float(np.polyfit(np.log(size), np.log(cost), 1)[0])

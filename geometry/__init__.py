@@ -1,4 +1,4 @@
-"""Geometry: a pin as a body of revolution, its exact volume, and its solid mesh.
+"""Geometry: a pin as a body of revolution with cuts, its exact volume, and its solid mesh.
 
 Lengths are in m. Of the other packages here, it imports only `pinbase`. `geometry.mesh.solid_mesh`
 needs meshio, scikit-fem and gmsh and is therefore not imported here.

@@ -1,4 +1,4 @@
 """Definitions that all rooms share: errors, array types, dimensions of numbers, child processes.
 
-This package imports nothing else of ours.
+It imports no other package of this project.
 """

@@ -10,15 +10,15 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-ROUND_OFF = 1e-9  # relative: values that differ by no more are equal
+ROUND_OFF = 1e-9  # relative: values that differ by no more than this are equal
 
 
 def first_largest(values: Floats, preferred: Mask | None = None) -> tuple[int, ...]:
-    """Return the place of the first of the largest values of an array.
+    """Return the index of the first of the largest values of an array.
 
-    Values that differ by round-off alone are equal: otherwise the processor would decide which of
-    two places that are loaded alike is named. Of equal ones those go first that are `preferred`,
-    (N,) along the last axis.
+    Values that differ only by round-off count as equal. Otherwise the processor would decide which
+    of two equally loaded places is named.
+    preferred: (N,) mask along the last axis; of equal values, preferred ones come first.
     """
     top = float(values.max())
     equal = values >= (top - ROUND_OFF * abs(top) if np.isfinite(top) else top)

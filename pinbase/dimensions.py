@@ -1,4 +1,4 @@
-"""Dimensions of fields in SI, as annotations from which pinbase.records.in_units converts them."""
+"""Dimensions of fields in SI, as annotations, by which pinbase.records.in_units converts them."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 Place = tuple[str | int, ...]
-# By dimension.
+# The SI unit of each dimension.
 SI_UNITS = {
     "length": "m",
     "area": "m^2",
@@ -22,7 +22,7 @@ SI_UNITS = {
 
 @dataclass(frozen=True)
 class NumberInSI:
-    """A number in SI within a message, which a study says in its own units.
+    """A number in SI within a message, which is shown in the units of the study.
 
     dimension: one of SI_UNITS.
     """
@@ -37,9 +37,9 @@ class NumberInSI:
 class CodedError(Exception):
     """An error with a short, stable `code` for programs and a message for people.
 
-    message: states what was wrong, where, and what would be right; in parts where some of them are
-    numbers with units.
-    at: path of the part that is wrong, for instance ("segment", 2); empty for the whole.
+    message: states what was wrong, where, and what would be right; a sequence of parts if it
+    contains numbers with units.
+    at: path of the faulty part, for instance ("segment", 2); empty for the whole.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class CodedError(Exception):
         self.code, self.at = code, at
 
     def told(self, show: Callable[[NumberInSI], str]) -> str:
-        """Return the message with its numbers as they are shown."""
+        """Return the message. show: formats its numbers."""
         return "".join(x if isinstance(x, str) else show(x) for x in self.parts)
 
 
@@ -61,4 +61,4 @@ class ArgumentError(CodedError, ValueError):
 
 
 class Damaged(ValueError):
-    """The content of a file is not what pinstress wrote; the message names the file."""
+    """The content of a file is not as pinstress wrote it; the message names the file."""

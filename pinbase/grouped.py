@@ -1,4 +1,4 @@
-"""Grouping of values by what they have in common."""
+"""Grouping of values by a common key."""
 
 from __future__ import annotations
 

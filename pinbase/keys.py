@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import re
 
-PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # that TOML needs no quotes for
-# A name in quotes: double ones, in which a backslash escapes, or single ones, which begin a part
+PLAIN_NAME_PATTERN = re.compile(r"[A-Za-z0-9_-]+")  # a name for which TOML needs no quotes
+# A name in double quotes, in which a backslash escapes, or in single quotes, which begin a part.
 QUOTED = r'"(?:[^"\\]|\\.)*"|(?<![^.])\'[^\']*\''
 NAME_PATTERN = re.compile(rf"{QUOTED}|[^.\"']+")  # a part of a key
 
 
 def key_part(name: str) -> str:
-    """Return a name as a key has it: in quotes where TOML needs them, single ones around a double
-    quote or a backslash, unless the name has a single one, too.
+    """Return a name as a part of a key, in quotes where TOML needs them.
+
+    Double quotes are used, except for a name with a double quote or a backslash: it has single
+    quotes, unless the name contains a single quote, too.
     """
     if PLAIN_NAME_PATTERN.fullmatch(name):
         return name
@@ -26,12 +28,12 @@ def names_in(key: str) -> list[str]:
 
 
 def unquoted(part: str) -> str:
-    """Return the name that a part of a key is, without its quotes."""
+    """Return a part of a key without its quotes."""
     if len(part) < 2 or part[0] not in "\"'" or part[0] != part[-1]:
         return part
     return re.sub(r"\\(.)", r"\1", part[1:-1]) if part[0] == '"' else part[1:-1]
 
 
 def lug_key(pin: str, connection: str, *parts: str) -> str:
-    """Return the key of the lug of a connection on a pin, or of parts of its table."""
+    """Return the key of the lug of a connection on a pin, or of `parts` within its table."""
     return ".".join(["pin", key_part(pin), "lug", key_part(connection), *parts])

@@ -1,4 +1,4 @@
-"""A memory of values by the content of all that they depend on, within a number of bytes."""
+"""A cache of values by the content of everything on which they depend, of a limited size."""
 
 from __future__ import annotations
 
@@ -10,22 +10,23 @@ from typing import Any, TypeVar
 import numpy as np
 
 T = TypeVar("T")
-# As tuples, since unions of types take twice as long to tell, and a memo asks a million times.
+# Tuples, because isinstance takes twice as long with unions of types, and a memo calls it a million
+# times.
 SCALARS = (int, float, type, NoneType)
 TEXTS = (bytes, str)
 COLLECTIONS = (list, tuple, set, frozenset)
 
-# Bytes: the flexibilities and meshes of two or three pins in contact (about 150 MB each).
+# Bytes; enough for the flexibilities and meshes of two or three pins in contact, 150 MB each.
 MAX_MEMO_SIZE = 4 * 10**8
 
 
 class Memo:
-    """Values by their keys; when they exceed a size, those not asked for longest are forgotten.
+    """A cache of values by their keys; beyond a size, the least recently used values are dropped.
 
-    A key holds everything that its value depends on, and a value is never changed. So an answer
-    is the same to the last bit whatever was asked before.
-    max_size: bytes of arrays and texts in all values; the latest value is kept however large.
-    made: number of values that were made by `get`.
+    A key holds everything on which its value depends, and a value is never changed. So a result is
+    the same to the last bit, whatever was computed before.
+    max_size: bytes of arrays and texts in all values; the latest value is kept, however large.
+    made: number of values that `get` has made.
     """
 
     def __init__(self, max_size: int = MAX_MEMO_SIZE) -> None:
@@ -34,9 +35,9 @@ class Memo:
         self._latest: Hashable = None  # the key of the value written last
 
     def get(self, key: Hashable, make: Callable[[], T]) -> T:
-        """The value of a key, made now unless it is remembered.
+        """The value of a key; it is made and stored unless it is in the cache.
 
-        Raises: what `make` raises; then nothing is remembered.
+        Raises: the errors of `make`; then nothing is stored.
         """
         if key not in self._values:
             value = make()
@@ -47,15 +48,15 @@ class Memo:
         return known
 
     def read(self, key: Hashable) -> Any:
-        """The value of a key; None where it is not remembered."""
+        """The value of a key; None where it is not in the cache."""
         if key not in self._values:
             return None
         self._values.move_to_end(key)
         return self._values[key][0]
 
     def write(self, key: Hashable, value: object) -> None:
-        """Remember a value."""
-        if self._latest in self._values:  # it has grown by what was derived from it since
+        """Store a value."""
+        if self._latest in self._values:  # since then it may have grown by cached properties
             self._measure(self._latest, self._values[self._latest][0])
         self._measure(key, value)
         self._values.move_to_end(key)
@@ -74,7 +75,8 @@ def size_of(value: object) -> int:
     seen: set[int] = set()
 
     def size(x: object) -> int:
-        # Named tuples in values are unit loads, of names and numbers, in thousands.
+        # Named tuples are not counted: in values they are unit loads, thousands of them, which
+        # consist of names and numbers.
         if isinstance(x, SCALARS) or id(x) in seen or hasattr(type(x), "_fields"):
             return 0
         seen.add(id(x))
@@ -82,7 +84,7 @@ def size_of(value: object) -> int:
             return x.nbytes
         if isinstance(x, TEXTS):
             return len(x)
-        if isinstance(x, COLLECTIONS):  # before mappings, whose abstract type takes longest to tell
+        if isinstance(x, COLLECTIONS):  # before mappings, for which isinstance takes longest
             return sum(map(size, x))
         if isinstance(x, Mapping):
             return sum(size(part) for both in x.items() for part in both)

@@ -14,12 +14,12 @@ PORTABLE_VARIABLE = "PINSTRESS_PORTABLE"
 
 
 def portable() -> bool:
-    """Return whether only features that Windows and macOS also have are to be used."""
+    """Return whether to use only features that Windows and macOS also have."""
     return sys.platform != "linux" or not hasattr(os, "fork") or _requested()
 
 
 def offered(library: str) -> Any:
-    """Return the compiled library of this name, or None where the system has no wheel for it."""
+    """Return the compiled library of this name, or None where the system does not offer it."""
     if _requested():
         return None
     try:

@@ -1,11 +1,11 @@
-"""Records are frozen dataclasses of numbers, arrays, texts and other records. Here they are walked:
-to JSON, to other units, and to bytes and back.
+"""Conversion of records to JSON, to other units, and to bytes and back.
 
-The types of their fields say what a value is. Numbers have their dimension in an annotation
-(pinbase.dimensions): a name, or several with exponents, "stress length^0.5". Of an object with a
-field `dimension`, "own" is that one; a class of which more dimensions differ from object to object
-has a property `dimension_of`, which maps the dimension of the annotation to that of the object.
-Both hold for all that the object holds.
+Records are frozen dataclasses of numbers, arrays, texts and other records. The types of their
+fields say what a value is. Numbers have their dimension in an annotation (pinbase.dimensions): a
+name, or several with exponents, as "stress length^0.5". In an object with a field `dimension`, the
+dimension "own" stands for the value of this field. A class with several dimensions that differ from
+object to object has a property `dimension_of`, which maps the dimension of the annotation to that
+of the object. Both apply to everything within the object.
 """
 
 from __future__ import annotations
@@ -27,16 +27,17 @@ T = TypeVar("T")
 Array = NDArray[Any]
 Unit = Callable[[str], float]
 
-# The same in every system
+# Dimensions with the same unit in every system of units
 SYSTEM_INDEPENDENT_DIMENSIONS = "1", "degrees", "rad", "rad/s", "rad/s^2"
-PLAIN_TYPES = frozenset((type(None), bool, int, float, str))  # as JSON has them
-JSON_ENTRY = "text"  # the name of the JSON in an npz file; arrays are called by their numbers
+PLAIN_TYPES = frozenset((type(None), bool, int, float, str))  # types that JSON has
+JSON_ENTRY = "text"  # name of the JSON text in an npz file; arrays are named by their numbers
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON has it.
+    """Return a value in types that JSON has.
 
-    Non-finite numbers become null, records objects of their fields, NumPy numbers ordinary ones.
+    Non-finite numbers become null, records become objects of their fields, and NumPy numbers become
+    ordinary numbers.
     """
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
@@ -50,9 +51,9 @@ def plain(value: Any) -> Any:
 
 
 def in_units(value: T, unit: Unit) -> T:
-    """Return a record with its numbers, and those of all it holds, in other units.
+    """Return a record with all its numbers, also in records within it, in other units.
 
-    unit: returns the SI value of the unit of a dimension.
+    unit: function that returns the SI value of the unit of a dimension.
     """
     own_dimension = {"own": value.dimension} if hasattr(value, "dimension") else {}
     dimension_of: Mapping[str, str] = getattr(value, "dimension_of", own_dimension)
@@ -71,7 +72,8 @@ def in_units(value: T, unit: Unit) -> T:
 def pack(value: object) -> bytes:
     """Return a value as bytes; equal values give equal bytes.
 
-    They are an npz file of the arrays and a JSON text with the rest, numbers bit for bit.
+    The bytes are an npz file of the arrays, and a JSON text of the rest, with numbers exact to the
+    last bit.
     value: records, tuples (named ones too), lists, dicts by text, arrays, numbers, texts and None.
 
     Raises: TypeError for anything else.
@@ -86,9 +88,11 @@ def pack(value: object) -> bytes:
 
 
 def digest(value: object) -> str:
-    """Return a hash of a value, as `pack` takes it; equal values have equal ones.
+    """Return a hash of a value; equal values have equal hashes.
 
-    Raises: TypeError as `pack`.
+    value: as for `pack`.
+
+    Raises: TypeError as for `pack`.
     """
     arrays: list[Array] = []
     text = json.dumps(_written(value, arrays), separators=(",", ":"))
@@ -100,7 +104,7 @@ def digest(value: object) -> str:
 
 
 def unpack(kind: type[T], data: bytes) -> T:
-    """Return the packed value, a `kind`; all of it is checked against the types of the records.
+    """Return the packed value, of type `kind`; every part is checked against the records' types.
 
     Raises: ValueError for a value of another type; the errors of numpy and zipfile for other data.
     """
@@ -128,14 +132,14 @@ def _is_named_tuple(kind: Any) -> bool:
 
 
 def _present(hint: Any) -> Any:
-    """Return the type of a value that is not None."""
+    """Return the type without None, if it is a union with None."""
     if get_origin(hint) in (Union, types.UnionType):
         (hint,) = (arm for arm in get_args(hint) if arm is not types.NoneType)
     return hint
 
 
 def _each(hint: Any, values: Iterable[Any]) -> Iterable[tuple[Any, Any]]:
-    """Return the items of a tuple, each after its type."""
+    """Return pairs (type, item) of the items of a tuple with the type `hint`."""
     inner = get_args(hint)
     if inner[1:] == (...,):
         return ((inner[0], value) for value in values)
@@ -144,7 +148,7 @@ def _each(hint: Any, values: Iterable[Any]) -> Iterable[tuple[Any, Any]]:
 
 @cache
 def _has_dimension(hint: Any) -> bool:
-    """Return whether there may be a dimension somewhere in a type."""
+    """Return whether a type may contain a dimension."""
     if is_dataclass(hint) or get_origin(hint) is Annotated:
         return True
     return any(_has_dimension(arm) for arm in get_args(hint))
@@ -178,8 +182,8 @@ def _converted(hint: Any, value: Any, unit: Unit) -> Any:
 
 
 def _written(value: object, arrays: list[Array]) -> object:
-    """Return a value as JSON has it, each array as its number in `arrays`."""
-    if type(value) in PLAIN_TYPES:  # most values, told apart in one step
+    """Return a value in types that JSON has; arrays are appended to `arrays` and become numbers."""
+    if type(value) in PLAIN_TYPES:  # a shortcut for most values
         return value
     if isinstance(value, np.generic):
         return value.item()
@@ -201,9 +205,9 @@ def _written(value: object, arrays: list[Array]) -> object:
 
 
 def _read(hint: Any, value: Any, arrays: dict[str, Array]) -> Any:
-    """Return what was written of a value of a type.
+    """Return the value of type `hint` from what `_written` returned for it.
 
-    Raises: ValueError for another value.
+    Raises: ValueError for a value of another type.
     """
     kind = _present(hint)
     if value is None and kind is not hint:

@@ -1,14 +1,14 @@
-"""Numbers rounded to the digits that are shown, to the side on which the message stays true."""
+"""Numbers rounded to the digits that are shown, up or down, so that the message stays true."""
 
 from __future__ import annotations
 
 import math
 
-ROUND_OFF = 1e-9  # by which a value may exceed the digits that it is rounded up to
+ROUND_OFF = 1e-9  # relative amount by which a value may lie beyond its rounded value
 
 
 def rounded_up(value: float, digits: int = 3) -> float:
-    """Return a positive limit that must be exceeded, rounded up to some digits: 0.0229."""
+    """Return a positive limit that must be exceeded, rounded up to some digits, as 0.0229."""
     last = _last_digit(value, digits)
     return last * math.ceil(value / last * (1.0 - ROUND_OFF))
 
@@ -20,5 +20,5 @@ def rounded_down(value: float, digits: int = 3) -> float:
 
 
 def _last_digit(value: float, digits: int) -> float:
-    """Return the unit of the last of the digits that are shown of a number."""
+    """Return the unit of the last digit of a number that is shown with some digits."""
     return 10.0 ** (math.floor(math.log10(value)) + 1 - digits)

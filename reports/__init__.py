@@ -1,1 +1,3 @@
-"""Reports: from results to tables, plots, VTK files, pictures and a page. Computes no mechanics."""
+"""Reports: results as tables, plots, VTK files, pictures and a page. No mechanics is
+computed here.
+"""

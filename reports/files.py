@@ -1,4 +1,4 @@
-"""All reports of a run into one directory."""
+"""All reports of a run, written into one directory."""
 
 from __future__ import annotations
 
@@ -35,7 +35,9 @@ def write_stress_tables(results: Results, directory: Path) -> None:
 
 
 def write_loads(results: Results, directory: Path) -> Path:
-    """Write results.json, the tables and a report of what needs no stresses; return its path."""
+    """Write results.json, the tables and the report of a run without stresses; return the page's
+    path.
+    """
     _write_tables(results, directory, ())
     return write_pages(results, directory)
 
@@ -48,10 +50,7 @@ def write_pages(results: Results, directory: Path) -> Path:
 
 
 def _write_tables(results: Results, directory: Path, others: Sequence[Table[Any]]) -> None:
-    """Write all tables.
-
-    others: tables that come before those of the loads.
-    """
+    """Write all tables. others: tables that precede those of the loads."""
     directory.mkdir(parents=True, exist_ok=True)
     write_json(results, directory / "results.json")
     tables = [*others, *load_tables(results)]

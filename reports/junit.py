@@ -1,8 +1,8 @@
 """Requirements as JUnit XML, which servers of continuous integration read.
 
 There is a test suite for each pin and a test case for each requirement. A requirement that is
-missed, or met only as described, is a failure; one that is not decided an error; one that was not
-checked is skipped, and never passes.
+missed, or met only as described, is a failure. One that is not decided is an error. One that was
+not checked is skipped, and never passes.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TAG_OF_OUTCOME = {
 }
 BY_FACTORS_ON_LOADS = ", by the factors on loads"
 COUNTED_TAGS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
-# Characters that XML 1.0 cannot have, not even escaped.
+# Characters that XML 1.0 does not allow, not even escaped.
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -46,7 +46,7 @@ def junit_xml(results: Results) -> bytes:
 
 
 def _counted(element: Element, name: str, rows: Iterable[RequirementRow]) -> Element:
-    """Return the element with its name and the numbers of its cases."""
+    """Return the element with its name and the numbers of its test cases."""
     tags = [TAG_OF_OUTCOME.get(row.outcome) for row in rows]
     element.set("name", _printable(name))
     element.set("tests", f"{len(tags)}")
@@ -56,9 +56,9 @@ def _counted(element: Element, name: str, rows: Iterable[RequirementRow]) -> Ele
 
 
 def _add_case(suite: Element, row: RequirementRow, study: str, by: str) -> None:
-    """Add the test case of a requirement, under a name that a new factor does not change.
+    """Add the test case of a requirement, under a name that does not change with the factor.
 
-    by: the end of the name, where a stated requirement has the same.
+    by: the end of the name, which distinguishes the requirement from a stated one of the same name.
     """
     case = f", {row.case}" if row.case else ""
     name = f"{row.title}{case}{by}"

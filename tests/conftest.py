@@ -1,6 +1,6 @@
-"""Fixtures that several rooms share."""
+"""Fixtures that tests in several folders share."""
 
-# ruff: noqa: E402  (threads are limited before numpy is imported)
+# ruff: noqa: E402  (the number of threads is limited before numpy is imported)
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from hypothesis import settings
 
 from pinbase.processes.threads import hold_threads
 
-hold_threads()  # as the command does, whose numbers are compared
+hold_threads()  # as the command does: its results are compared with those of this process
 
 from fea.core.material import Material
 from geometry import Pin, Segment
@@ -34,27 +34,29 @@ from tests.support.programs.process_group import children
 from tests.support.programs.swept import LONG_SWEEP
 from tests.support.programs.terminal import on_terminal
 
-os.environ.pop("COLUMNS", None)  # which workers of xdist have, and users seldom
-os.environ["PINSTRESS_CACHE"] = ""  # what is tested is solved, in other processes too
+os.environ.pop("COLUMNS", None)  # set in the workers of xdist, but seldom by users
+os.environ["PINSTRESS_CACHE"] = ""  # tests solve anew, in other processes too
 
-resource_tracker.ensure_running()  # of processes started anew; it stays to the end
+resource_tracker.ensure_running()  # the tracker of spawned processes, which stays to the end
 
 ROOT = Path(__file__).parent.parent
 INCH = 0.0254
 LBF = 0.45359237 * 9.80665
 PSI = LBF / INCH**2
 
-# Else an example that takes longer than 0.2 s, as any may on a busy machine, fails its test.
+# By default an example that takes longer than 0.2 s, as any may on a busy machine, fails its
+# test.
 settings.register_profile("no clock", deadline=None)
 settings.load_profile("no clock")
 
 
-@pytest.hookimpl(tryfirst=True)  # before tests are left out by marks
+@pytest.hookimpl(tryfirst=True)  # before pytest itself deselects tests by their marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Tests that need other programs and long ones are left out unless `-m` names them, and those
-    of what Linux alone has under PINSTRESS_PORTABLE=1. Listed ones have the mark `seconds`.
+    """Deselect the tests that need other programs, and long ones, unless `-m` names their mark;
+    under PINSTRESS_PORTABLE=1 also those that run on Linux only. Mark the tests listed as slow with
+    `seconds`.
 
-    Here and not in addopts, where any other `-m` would bring them back.
+    This is done here and not in addopts, where any other `-m` would select them again.
     """
     listed = seconds.functions()
     for item in items:
@@ -72,7 +74,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture(autouse=True)
 def _no_process_is_left() -> Iterator[None]:
-    """A test that leaves a process behind fails, and not one that runs later."""
+    """Fail the test that leaves a process behind, rather than one that runs later."""
     before = children()
     yield
     left = children() - before
@@ -84,7 +86,7 @@ def _no_process_is_left() -> Iterator[None]:
 
 @pytest.fixture
 def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Files of pins are read in this process: to start another takes longer than to read one.
+    """Read files of pins in this process, since starting another takes longer than reading one.
 
     That they are read in another is tested in pinstress/study/model/test_read_body.py.
     """
@@ -97,8 +99,10 @@ def read_here(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="session")
 def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
-    """The folder of results of a shipped study, which the command has run once for all tests; the
-    files "status" and "terminal" beside it have how it ended and what it printed in 80 columns.
+    """Return a function from the name of a shipped study to its folder of results.
+
+    The command runs each study once for all tests. The files "status" and "terminal" beside the
+    folder hold its exit status and what it printed on 80 columns.
     """
 
     def found(study: str) -> Path:
@@ -117,7 +121,9 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Shipped:
 
 @pytest.fixture(scope="session")
 def whole_sweep(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The table that one process makes of LONG_SWEEP, once for all tests that interrupt it."""
+    """Return the table that one process writes for LONG_SWEEP, made once for all tests that
+    interrupt it.
+    """
 
     def sweep(folder: Path) -> None:
         (folder / "study.toml").write_text(LONG_SWEEP, encoding="utf-8")
@@ -130,7 +136,7 @@ def whole_sweep(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 @pytest.fixture(scope="session")
 def gear() -> Study:
-    """The landing gear as it ships."""
+    """Return the study of the landing gear as shipped."""
     return load_study(ROOT / "studies" / "grenier2008.toml")
 
 
@@ -146,7 +152,7 @@ def steel() -> Material:
 
 @pytest.fixture(scope="session")
 def cantilever_pin() -> Pin:
-    """20 mm shaft on a 30 mm root, 5 mm fillet, loaded over its last 20 mm."""
+    """Return a 20 mm shaft on a 30 mm root with a 5 mm fillet, loaded over its last 20 mm."""
     return Pin(
         "P",
         (Segment(0.02, 0.03), Segment(0.02, 0.02), Segment(0.02, 0.02, connection="P1")),

@@ -63,7 +63,7 @@ class FixedContact:
         tail = tail_weights(self._contact.sectors, count)
         self._tail = np.real(np.conj(self._l) * self._f) @ tail
         self._wavy = {
-            model.likeness(lug, ends): model.wavy[:, :, rings, rings].sum(axis=0)
+            model.flexibility_key(lug, ends): model.wavy[:, :, rings, rings].sum(axis=0)
             for rings, lug, ends in model.by_lug()
         }
 
@@ -93,7 +93,7 @@ class FixedContact:
         total -= self._tail @ (model.tail / of_ring)
         high = model.high
         for rings, lug, ends in model.by_lug():
-            known_wavy = self._wavy.get(model.likeness(lug, ends))
+            known_wavy = self._wavy.get(model.flexibility_key(lug, ends))
             wavy = model.wavy_of(lug, ends).sum(axis=0) if known_wavy is None else known_wavy
             lost, pressed = (x[rings][:, high % sectors] for x in (self._l, self._f))
             pressed = pressed / of_ring[rings, None]

@@ -147,7 +147,7 @@ class _InLugs:
     def lug_works(self) -> dict[str, RingWork]:
         """The work of each lug's flexibility, by connection; identical lugs share a `RingWork`."""
         model, out = self.model, dict[str, RingWork]()
-        for key, equal in model.alike().items():
+        for key, equal in model.equal_lugs().items():
             pairs = {x.connection: tuple(self.contact.pairs(rings)) for rings, x, _ in equal}
             out |= dict.fromkeys(pairs, RingWork(model.on_lugs[key], pairs))
         return out

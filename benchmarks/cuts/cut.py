@@ -1,4 +1,4 @@
-"""Cuts by local solids: known ones, beside the whole solid and CalculiX."""
+"""Cuts with known stress by local solids, compared with the solid model and CalculiX."""
 
 from __future__ import annotations
 
@@ -28,22 +28,22 @@ from geometry import CutPin, Hole
 
 HOLE = 0.004
 NOMINAL = 32.0 * 1500.0 * 0.02 / (np.pi * D**3)
-# Meshes of CalculiX, graded as local solids are, and finer where stress is largest in these: on
-# both mouths, on both sides.
+# Meshes of CalculiX, graded like those of local solids, and finer where the stress of these is
+# largest: at both mouths, on both sides.
 OTHERS = (0, 1, 2)
-SINGLE = (0, 1, 2)  # meshes of ours, finer at one of these spots, as the others are its images
+SINGLE = (0, 1, 2)  # our meshes, finer at one of these spots; the others are its images
 SPOTS = tuple((x, y, 0.08) for x in (0.0095, -0.0095) for y in (0.002, -0.002))
-EQUAL = 0.003  # relative error at which both are compared: that of the true values is up to this
-# Largest von Mises stress over the nominal one, and what is known of it: an eighth in CalculiX on
-# local meshes, whose stress is read in two ways.
+EQUAL = 0.003  # relative error at which both are compared; the true values are no more accurate
+# Largest von Mises stress over the nominal one, and its uncertainty: from an eighth of the shaft in
+# CalculiX on local meshes, whose stress is read in two ways.
 KNOWN = {"tension": (3.395, 0.005), "bending": (3.10, 0.01)}
 
 
 def cut() -> str:
-    """A hole of a fifth of the shaft's diameter in tension and in bending, at the extreme fibre;
-    then all kinds of cuts.
+    """Return the table of a hole at the extreme fibre, a fifth of the shaft's diameter wide, in
+    tension and in bending, followed by the table of all kinds of cuts.
     """
-    cost = cut_cost()  # first: a new process counts as its own the most memory that this one had
+    cost = cut_cost()  # first, since the memory of a new process includes the peak of this one
     pin = CutPin(SHAFT, (Hole(0.08, HOLE),))
     local = [_row(pin, name, "auto", 0.01) for name in KNOWN]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
@@ -65,7 +65,9 @@ def cut() -> str:
 
 
 def _alike(pin: CutPin) -> str:
-    """Single meshes of ours and of CalculiX, all made by our mesher, finer at the known places."""
+    """Return the table of single meshes of ours and of CalculiX, all by our mesher, finer at the
+    known spots.
+    """
     rows, told = [], []
     for name, (factor, _) in KNOWN.items():
         true = factor * _nominal(name)
@@ -104,7 +106,9 @@ def _others() -> tuple[int, ...]:
 
 
 def _single(pin: CutPin, name: str, level: int) -> tuple[Other, float]:
-    """One mesh of ours, fine where CalculiX's are, and s for further instants."""
+    """Return the result of one mesh of ours, fine where CalculiX's are, and the time of further
+    instants, s.
+    """
     loads, bands = _loads(name), loaded_bands(pin, pin.connections)
     zones = singularities_of(pin.profile, STEEL, (), (loads,))
     problem = SectionProblem(pin.profile, STEEL, (), (loads,), zones)
@@ -121,7 +125,7 @@ def _single(pin: CutPin, name: str, level: int) -> tuple[Other, float]:
 
 
 def _nominal(name: str) -> float:
-    """Pa."""
+    """Return the nominal stress, Pa."""
     return 100e6 if name == "tension" else NOMINAL
 
 

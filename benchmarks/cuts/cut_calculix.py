@@ -1,4 +1,4 @@
-"""A pin with cuts as a whole in CalculiX: C3D10 on our own meshes."""
+"""A pin with cuts solved as a whole by CalculiX: C3D10 on our own meshes."""
 
 from __future__ import annotations
 
@@ -30,8 +30,11 @@ from pinbase.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class Other:
-    """Unknowns, the largest von Mises stress outside of singularities, Pa, and processor time, s,
-    of the other program, and of its mesh where that was measured.
+    """A result of the other program.
+
+    unknowns: their number.
+    maximum: the largest von Mises stress outside singularities, Pa.
+    seconds: processor time, s. meshing: that of its mesh, s, if measured.
     """
 
     unknowns: int
@@ -41,7 +44,8 @@ class Other:
 
 
 def in_calculix(pin: CutPin, clamps: tuple[str, ...], loads: PinLoads, finer: float) -> Other:
-    """On a mesh so many times finer than the first one of the solid model.
+    """Return CalculiX's result on a mesh `finer` times finer than the first mesh of the solid
+    model.
 
     Raises: CalculixError.
     """
@@ -56,10 +60,12 @@ def in_calculix(pin: CutPin, clamps: tuple[str, ...], loads: PinLoads, finer: fl
 def in_calculix_locally(
     pin: CutPin, loads: PinLoads, level: int, spots: Spots, steps: int = 1
 ) -> Other:
-    """Of a pin that nothing clamps, on a mesh graded as those of local solids are: fine at the
-    edges of cuts, finer at spots (x, y, z), m, and coarse elsewhere. steps: of the same loads, one
-    after the other, for their time.
+    """Return CalculiX's result for a pin without clamps, on a mesh graded like those of local
+    solids.
 
+    The mesh is fine at the edges of cuts, finer at the spots (x, y, z), m, and coarse elsewhere.
+    steps: the number of steps with the same loads, to measure their time; the maximum of several is
+    0.
     Raises: CalculixError.
     """
     piece = Piece(pin.profile, 0.0, pin.profile.length, 0.0, pin.cuts, (), (False, False))

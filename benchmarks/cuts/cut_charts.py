@@ -1,4 +1,4 @@
-"""Cross holes beside the charts of the literature: tension, bending and torsion over d/D."""
+"""Cross holes compared with charts of the literature: tension, bending and torsion over d/D."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from pinbase.arrays import Floats
 
 D = 0.02
 RATIOS = (0.05, 0.1, 0.15, 0.2, 0.3)
-FINE = 1.5  # times as fine as the first mesh
+FINE = 1.5  # fineness of the mesh over that of the first
 SCATTERED, ABOUT_FIRST, FINEST = (0.15, 0.3), (1.0, 1.1, 1.2, 1.3, 1.45, 1.6), 3.0
 BAR = Pin("bar", (Segment(0.16, D, name="side"),))
-# Of d / D from the third power down; largest stress over the nominal one of the whole section, at
-# the extreme fibre. Pilkey & Pilkey, Peterson's Stress Concentration Factors, 3rd ed., chapter 4:
-# tubes with a transverse hole, with an inner diameter of zero.
+# Polynomials in d / D, from the third power down, of the largest stress over the nominal stress of
+# the whole section at the extreme fibre. Pilkey & Pilkey, Peterson's Stress Concentration Factors,
+# 3rd ed., chapter 4: tubes with a transverse hole, with an inner diameter of zero.
 PETERSON = {
     "tension": (0.0, 11.357, 0.427, 3.0),
     "bending": (-45.0, 41.0, -6.25, 3.0),
@@ -31,19 +31,19 @@ PETERSON = {
 
 
 def chart(load: str, ratio: float) -> float:
-    """Of the literature."""
+    """Return the factor of the literature."""
     return float(np.polyval(PETERSON[load], ratio))
 
 
 @cache
 def model(ratio: float) -> LocalModel:
-    """An eighth of a bar with a hole of so much of its diameter along x."""
+    """Return an eighth of a bar with a hole along x. ratio: of the diameters of hole and bar."""
     (piece,) = pieces(CutPin(BAR, (Hole(0.08, ratio * D),)), ())
     return LocalModel(piece, piece_mesh(piece, FINE), STEEL)
 
 
 def uncut(of: LocalModel, load: str) -> Floats:
-    """Stress (G, P, 6, 1) of the bar, one at the extreme fibre."""
+    """Return the stress (G, P, 6, 1) of the bar without the hole, 1 at the extreme fibre."""
     x, y, _ = np.moveaxis(of.faces.images, -1, 0)
     out = np.zeros((*x.shape, 6, 1))
     if load == "torsion":
@@ -54,9 +54,10 @@ def uncut(of: LocalModel, load: str) -> Floats:
 
 
 def cut_scatter() -> str:
-    """How far the largest von Mises stress is off with the positions of nodes: the error times the
-    square of the fineness, on meshes about as fine as the first one, under random superpositions
-    of tension, bending in two planes and torsion.
+    """Return the table of the scatter of the largest von Mises stress with the positions of nodes.
+
+    The scatter is the error times the square of the fineness, on meshes about as fine as the first
+    one, under random superpositions of tension, bending in two planes and torsion.
     """
     amounts = np.concatenate([np.eye(4), np.random.default_rng(5).normal(size=(12, 4))])
 
@@ -80,13 +81,13 @@ def cut_scatter() -> str:
 
 
 def factors(load: str, ratio: float) -> tuple[float, float]:
-    """The largest principal and von Mises stress over the nominal stress."""
+    """Return the largest principal and von Mises stress over the nominal stress."""
     found = model(ratio)
     return largest(found.solve(uncut(found, load)))
 
 
 def largest(read: Read) -> tuple[float, float]:
-    """Principal stress and von Mises stress."""
+    """Return the largest principal stress and the largest von Mises stress."""
     xx, yy, zz, yz, xz, xy = np.moveaxis(read.stress[..., 0], -1, 0)
     tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=1).reshape(-1, 3, 3)
     a, b, c = np.linalg.eigvalsh(tensor).T
@@ -95,7 +96,7 @@ def largest(read: Read) -> tuple[float, float]:
 
 
 def cut_charts() -> str:
-    """A table over loads and ratios."""
+    """Return the table over loads and ratios."""
     rows = []
     for load in PETERSON:
         for ratio in RATIOS:

@@ -1,4 +1,6 @@
-"""What local solids cost about cuts of every kind: one process for each, alone."""
+"""The cost of local solids about cuts of every kind, each measured alone in a process of
+its own.
+"""
 
 from __future__ import annotations
 
@@ -42,14 +44,16 @@ KINDS: dict[str, Cut] = {
 
 
 def four_point(count: int = 1) -> PinLoads:
-    """Bending of 30 N m amid the shaft, across x."""
+    """Return four-point bending of 30 N m at the middle of the shaft, by forces along x."""
     size = 1500.0 * np.cos(np.arange(count))[:, None, None]
     forces = np.array([[1.0, 0, 0], [-1.0, 0, 0], [-1.0, 0, 0], [1.0, 0, 0]])
     return PinLoads("bending", BANDS, size * forces)
 
 
 def cut_cost() -> str:
-    """Each in a process of its own, in four-point bending with the cut at the extreme fibre."""
+    """Return the table of all kinds, each at the extreme fibre in four-point bending, in its own
+    process.
+    """
     rows = []
     for kind in KINDS:
         command = [sys.executable, "-m", "benchmarks.cuts.cut_cost", kind]
@@ -63,7 +67,7 @@ def cut_cost() -> str:
 
 
 def measured(kind: str) -> list[str | int]:
-    """The row of a kind; memory is that of this whole process."""
+    """Return the row of a kind; the memory is that of this whole process."""
     pin, loads, start = CutPin.of(SHAFT, (KINDS[kind],)), four_point(), time.process_time()
     found = solve_pin(pin, STEEL, (), (loads,), Requirement(TOLERANCE))[0]
     spent, peak = time.process_time() - start, found.peak

@@ -1,8 +1,10 @@
-"""Whether the error of local solids contains the truth: random pins beside much finer meshes.
+"""Tests whether the error of local solids contains the truth: random pins compared with finer
+meshes.
 
-A reference is made on meshes of another family than those of a run: finer along all edges of the
-cuts, and about every place where stress is nearly the largest. There are two, and what they differ
-by says how far they can be trusted. What each pin gave is kept, so that a stopped run goes on.
+The references are computed on meshes of another family than those of a run: finer along all edges
+of the cuts, and about every place where stress is nearly the largest. There are two references,
+whose difference shows how reliable they are. The result of each pin is kept, so that an interrupted
+benchmark can be resumed.
 """
 
 from __future__ import annotations
@@ -33,18 +35,22 @@ from fea.solve.solve import solve_pin
 
 COUNT, KINDS, SEED = 30, 6, 7
 TOLERANCE = 0.02
-# Of both references: how much smaller than on the last mesh of the run elements are along the edges
-# of cuts, and where stress is largest.
+# For both references: the factors by which elements are smaller than on the last mesh of the run,
+# along the edges of cuts and where stress is largest.
 FINER = ((1.5, 2.2), (2.0, 3.0))
-SECTION = 3  # levels by which their sections are finer
-LONGER = 2.0  # their local solids, beyond the cuts
+SECTION = 3  # levels by which the sections of the references are finer
+LONGER = 2.0  # reach of the local solids of the references over that of a run
 KEPT = ROOT / "build" / "benchmarks"
 
 
 @dataclass(frozen=True)
 class Inside:
-    """Of a pin: its unknowns and its reference's; how far off the maximum is, what the error said,
-    and what the references differ by, relative; and processor time of both, s.
+    """The result of a pin.
+
+    unknowns, of_reference: numbers of unknowns of the run and of the reference.
+    off: relative error of the maximum. error: the estimated one.
+    differ: relative difference of the references.
+    spent, on_reference: processor times, s.
     """
 
     pin: str
@@ -63,7 +69,7 @@ class Inside:
 
     @property
     def row(self) -> tuple[object, ...]:
-        """As in the table."""
+        """The row of the table."""
         off, error, differ = (100.0 * x for x in (self.off, self.error, self.differ))
         yes = "yes" if self.inside else "no"
         times = self.of_reference / self.unknowns
@@ -71,12 +77,12 @@ class Inside:
 
 
 def cut_pins() -> str:
-    """Whether the error contains the truth, on random pins with holes."""
+    """Return the comparison for random pins with holes."""
     return _contained("cut-pins", cut_trials(COUNT, SEED))
 
 
 def cut_kinds() -> str:
-    """The same on random pins with cuts of other kinds."""
+    """Return the comparison for random pins with cuts of other kinds."""
     return _contained("cut-kinds", kind_trials(KINDS, SEED))
 
 
@@ -85,7 +91,7 @@ def _contained(name: str, trials: list[CutTrial]) -> str:
     kept.parent.mkdir(parents=True, exist_ok=True)
     for trial in trials:
         pin = trial.pin.name
-        if pin in _known(kept):  # by now: several processes may share the work
+        if pin in _known(kept):  # read again, since several processes may share the work
             continue
         found = _trial(trial)
         print(*(found.row if found else (pin, "no local solid")), file=sys.stderr, flush=True)
@@ -96,7 +102,7 @@ def _contained(name: str, trials: list[CutTrial]) -> str:
 
 
 def _known(kept: Path) -> dict[str, Inside | None]:
-    """By pin."""
+    """Return the kept results by pin."""
     lines = kept.read_text(encoding="utf-8").splitlines() if kept.exists() else []
     return {pin: Inside(**found) if found else None for pin, found in map(json.loads, lines)}
 
@@ -123,7 +129,9 @@ def _told(found: list[Inside | None]) -> str:
 
 
 def _code() -> str:
-    """A name for the present state of what is measured: what another one found does not count."""
+    """Return a name for the present state of the measured code, since results of other states do
+    not count.
+    """
     own = (Path(__file__), Path(__file__).with_name("random_cuts.py"))
     every = sorted(p for part in ("assess", "fea", "geometry") for p in (ROOT / part).rglob("*.py"))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in (*own, *every)))
@@ -131,7 +139,9 @@ def _code() -> str:
 
 
 def _trial(trial: CutTrial) -> Inside | None:
-    """None where the whole pin is solid, or the maximum at a singularity."""
+    """Return the result of a trial; None if the whole pin is solid, or its maximum at a
+    singularity.
+    """
     start = time.process_time()
     requirement = Requirement(TOLERANCE)
     found = solve_pin(trial.pin, STEEL, trial.clamps, (trial.loads,), requirement)[0].peak
@@ -151,7 +161,9 @@ def _trial(trial: CutTrial) -> Inside | None:
 
 
 def _references(trial: CutTrial, found: Maximum) -> list[MeshMaximum]:
-    """Of both meshes, the second of which is about the places that the first found."""
+    """Return the maxima of both reference meshes; the second is refined at the places that the
+    first found.
+    """
     pin, clamps, loads = trial.pin, trial.clamps, trial.loads
     assert found.location is not None
     x, y, z = found.location

@@ -1,4 +1,4 @@
-"""Pins with cross holes drawn at random, seeded: what the error of the local solids is tried on."""
+"""Pins with cuts drawn at random from a seed, on which the error of local solids is tested."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ KINDS = "clamped", "between", "held twice", "pressed"
 
 @dataclass(frozen=True)
 class CutTrial:
-    """A pin with holes, what holds it, and one case of loads."""
+    """A pin with cuts, its clamps, and one case of loads."""
 
     pin: CutPin
     clamps: tuple[str, ...]
@@ -22,9 +22,11 @@ class CutTrial:
 
 
 def cut_trials(count: int, seed: int) -> list[CutTrial]:
-    """Shafts with a hole, one in five with two, one in four bored, in turn: out of a thick root
-    that is clamped; with bands on thick ends; clamped at both ends; pressed on the shaft itself,
-    where the hole is, and held by bands on thick ends. Loads in all directions.
+    """Return shafts with a hole, one in five with two holes, one in four bored, under loads in all
+    directions.
+
+    Their kinds alternate: with a thick root that is clamped; with bands on thick ends; clamped at
+    both ends; and loaded on the shaft itself, about the hole, and held by bands on thick ends.
     """
     rng = np.random.default_rng(seed)
     return [_trial(rng, k) for k in range(count)]
@@ -79,7 +81,9 @@ def _holes(
 
 
 def kind_trials(count: int, seed: int) -> list[CutTrial]:
-    """The same with rounded flats, keyways, slots, blind, countersunk and rounded holes."""
+    """Return similar shafts with rounded flats, keyways, slots, and blind, countersunk and rounded
+    holes.
+    """
     rng = np.random.default_rng(seed)
     return [_kind_trial(rng, k) for k in range(count)]
 
@@ -111,7 +115,7 @@ def _kind_trial(rng: np.random.Generator, k: int) -> CutTrial:
 
 
 def _cut(rng: np.random.Generator, d: float, z: float, k: int) -> Cut:
-    """At the middle of a shaft, not deeper than a bore leaves it."""
+    """Return a cut at the middle of a shaft, no deeper than its bore allows."""
     size, angle = d * float(rng.uniform(0.12, 0.3)), float(rng.uniform(-np.pi, np.pi))
     deep, half = d * float(rng.uniform(0.12, 0.2)), d * float(rng.uniform(0.3, 0.6))
     rounded = size * float(rng.uniform(0.1, 0.2))

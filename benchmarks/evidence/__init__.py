@@ -1,1 +1,3 @@
-"""Predictions of the program beside measured, printed and exact numbers: docs/evidence.md."""
+"""Predictions of the program compared with measured, printed and exact numbers:
+docs/evidence.md.
+"""

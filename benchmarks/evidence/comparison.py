@@ -1,4 +1,6 @@
-"""A number that the program predicts beside a measured, printed or exact one, and its source."""
+"""A number that the program predicts, compared with a measured, printed or exact one, and its
+source.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +25,23 @@ KINDS = {
     "elements": "Published finite elements",
     "exact": "Exact solutions",
 }
-ROUNDING = 0.5001  # of the last digit that is printed
-TOLERANCE = 2e-3  # of agreement beyond that: prints round in between, and end numbers with zeros
+ROUNDING = 0.5001  # of the last printed digit
+TOLERANCE = 2e-3  # beyond rounding: publications round intermediate results and large numbers
 
 
 @dataclass(frozen=True)
 class Printed:
-    """A number in print, and where a run has its own: a row of printed.csv.
+    """A printed number, and where a run has the corresponding one: a row of printed.csv.
 
-    source: its name in sources.toml. study: in studies/evidence, with " in contact" where the joint
-    is solved; empty for a public function. check, at: of the margin; read: what of it is compared,
-    multiplied by `times`. text: the number as printed. fault: whether a difference is an error in
-    print, or one of the program's models. remark: why. resolution: of the prediction, as of cells.
+    source: its name in sources.toml.
+    study: in studies/evidence, with " in contact" if the joint is solved; empty for a public
+    function.
+    check, at: of the margin.
+    read: the quantity of the margin that is compared, multiplied by `times`.
+    text: the number as printed.
+    fault: whether a difference is an error in print, or of the program's model.
+    remark: the reason of a difference.
+    resolution: of the prediction, as by the size of cells.
     """
 
     source: str
@@ -57,13 +64,13 @@ class Printed:
 
     @property
     def rounding(self) -> float:
-        """Half of the last decimal that is printed."""
+        """Half a unit of the last printed decimal."""
         return ROUNDING * 10.0 ** -len(self.text.partition(".")[2])
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A prediction beside a number. kind: of KINDS."""
+    """A prediction compared with a number. kind: of KINDS."""
 
     kind: str
     printed: Printed
@@ -76,7 +83,7 @@ class Comparison:
 
     @property
     def agrees(self) -> bool:
-        """Whether the prediction is the number to the digits in print."""
+        """Whether the prediction equals the number within the printed digits."""
         off = abs(self.predicted - self.printed.value)
         near = self.printed.rounding + self.printed.resolution
         return off <= near + TOLERANCE * abs(self.printed.value)
@@ -84,8 +91,12 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Source:
-    """Where numbers are from: kind of KINDS (of tests, the first), what it is, errors in print, and
-    what agreement with it does not establish. function: what was called where no study has it.
+    """The origin of numbers.
+
+    kind: of KINDS (of tests, the first). title, cited: the source.
+    limits: what agreement with the source does not establish.
+    errors: errors in print.
+    function: the function that was called where there is no study.
     """
 
     kind: str
@@ -98,19 +109,19 @@ class Source:
 
 @cache
 def sources() -> dict[str, Source]:
-    """All sources by name, in the order of the page."""
+    """Return all sources by name, in the order of the page."""
     text = (Path(__file__).parent / "sources.toml").read_text(encoding="utf-8")
     return {name: Source(**table) for name, table in tomllib.loads(text).items()}
 
 
 def records(name: str) -> list[dict[str, str]]:
-    """The rows of a table in studies/evidence."""
+    """Return the rows of a table in studies/evidence."""
     with (STUDIES / name).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def printed_numbers() -> list[Printed]:
-    """The rows of printed.csv."""
+    """Return the rows of printed.csv."""
     return [
         Printed(
             row["source"], row["study"], row["quantity"], row["check"], row["at"], row["read"],

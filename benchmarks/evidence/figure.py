@@ -14,11 +14,11 @@ LEAST_RATIO, MOST_RATIO = 0.45, 1.25
 SPREAD, COLUMN = (
     0.28,
     0.008,
-)  # of dots across a row; of the axis, within which dots are side by side
+)  # height over which the dots of a row spread; width of axis in which dots are stacked
 
 
 def draw(comparisons: Sequence[Comparison]) -> list[Path]:
-    """Write the figure as SVG and PNG; returns both paths."""
+    """Write the figure as SVG and PNG; return both paths."""
     with panels(1, height=3.1) as (figure, (axes,)):
         axes.axvline(1.0, color=INK, linewidth=0.9)
         for row, (kind, title) in enumerate(reversed(KINDS.items())):
@@ -53,7 +53,7 @@ def draw(comparisons: Sequence[Comparison]) -> list[Path]:
 
 
 def _spread(ratios: Sequence[float]) -> list[float]:
-    """Heights of dots of a row, those of nearly the same ratio one above the other."""
+    """Return the heights of the dots of a row; dots of nearly the same ratio are stacked."""
     columns: dict[int, int] = {}
     sizes: dict[int, int] = {}
     places = [round(ratio / COLUMN) for ratio in ratios]

@@ -13,7 +13,7 @@ from benchmarks.evidence.comparison import KINDS, Comparison, Fault, Source, rec
 from benchmarks.timing import table
 
 PAGE = ROOT / "docs" / "evidence.md"
-WIDTH = 120  # of a line of text
+WIDTH = 120  # characters of a line of text
 TEMPLATE = Path(__file__).parent / "template.md"
 REASONS: dict[Fault, str] = {"": "", "print": "error in print: ", "model": "miss: "}
 BARS_NOTE = """The limit load is the lower end of its bracket, the ultimate load the largest up to
@@ -23,7 +23,7 @@ this scatter, not an allowable."""
 
 
 def page(comparisons: Iterable[Comparison]) -> str:
-    """The page of all comparisons."""
+    """Return the page of all comparisons."""
     every = list(comparisons)
     parts = []
     for name, source in sources().items():
@@ -35,7 +35,7 @@ def page(comparisons: Iterable[Comparison]) -> str:
 
 
 def statistics_table(comparisons: list[Comparison]) -> str:
-    """Number, mean and scatter of the ratios by kind."""
+    """Return the table of number, mean and scatter of the ratios by kind."""
     rows: list[tuple[object, ...]] = []
     for kind, title in KINDS.items():
         of_kind = [c for c in comparisons if c.kind == kind]
@@ -54,7 +54,7 @@ def statistics_table(comparisons: list[Comparison]) -> str:
 
 
 def source_table(name: str, comparisons: list[Comparison]) -> str:
-    """The comparisons with a source."""
+    """Return the table of the comparisons with a source."""
     if name == "moore":
         return _bars(comparisons)
     rows = source_rows(comparisons)
@@ -67,7 +67,7 @@ def source_table(name: str, comparisons: list[Comparison]) -> str:
 
 
 def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
-    """Cells of the comparisons with a source."""
+    """Return the cells of the comparisons with a source."""
     return [
         (
             c.printed.quantity, f"`{c.printed.study}`",
@@ -79,12 +79,12 @@ def source_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
 
 
 def _shown(value: float) -> str:
-    """A prediction to four digits, or all before the point."""
+    """Return a prediction with four digits, or with all digits before the point."""
     return f"{value:.0f}" if abs(value) >= 1e4 else f"{value:.4g}"
 
 
 def bar_rows(comparisons: Iterable[Comparison]) -> list[tuple[object, ...]]:
-    """Cells of the bars that broke, both loads of a bar in one row."""
+    """Return the cells of the broken bars; both loads of a bar are in one row."""
     out: list[tuple[object, ...]] = []
     for quantity, of_bar in groupby(comparisons, lambda c: c.printed.quantity):
         limit, ultimate = of_bar
@@ -109,7 +109,7 @@ def _bars(comparisons: list[Comparison]) -> str:
 
 
 def _about(source: Source) -> str:
-    """What a source is, its errors, and what it does not establish."""
+    """Return the description of a source, its errors, and what it does not establish."""
     parts = [source.cited]
     if source.function:
         parts.append(f"Not a study: `{source.function}`.")

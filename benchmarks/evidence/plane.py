@@ -1,5 +1,5 @@
-"""Plane problems with exact solutions, which are no studies, by the functions of the contact of
-pins and of the stress of lugs.
+"""Plane problems with exact solutions, for which there are no studies, solved by the functions for
+contact of pins and for stress of lugs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ CELL_DEGREES = 180.0 / SECTORS  # half of a cell
 
 
 def plane_predictions() -> dict[Printed, float]:
-    """The predictions of the exact solutions."""
+    """Return the predictions for the exact solutions."""
     peak, width = roller()
     values = {("hertz", "peak"): peak, ("hertz", "half width"): width}
     values |= {("press_fit", name): value for name, value in _press_fit().items()}
@@ -25,7 +25,9 @@ def plane_predictions() -> dict[Printed, float]:
 
 
 def _persson() -> dict[Printed, float]:
-    """A pin in a plate, at every gap of persson.csv: peak pressure and half angle of contact."""
+    """Return the predictions for a pin in a plate, at every gap of persson.csv: peak pressure and
+    half angle of contact.
+    """
     out = {}
     for row in records("persson.csv"):
         contact = plane(float(row["gap"]) / E_STAR, SECTORS, HARMONICS)
@@ -45,8 +47,10 @@ def _persson() -> dict[Printed, float]:
 
 
 def _press_fit() -> dict[str, float]:
-    """Pressure and hoop stresses of a bushing pressed into a ring, psi: 10.3e6 and 16.0e6 psi, nu
-    0.33, radii 0.1875, 0.25 and 0.75 in, an interference of 0.001 in on the diameter.
+    """Return pressure and hoop stresses, psi, of a bushing pressed into a ring.
+
+    Moduli 10.3e6 and 16.0e6 psi, nu 0.33, radii 0.1875, 0.25 and 0.75 in, interference 0.001 in on
+    the diameter.
     """
     outline = LugOutline("ring", 0.375, 1.5, interface=0.5)
     fields = plane_fields(outline, Elasticity(0.33, 16.0 / 10.3, 0.33))

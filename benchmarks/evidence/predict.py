@@ -1,4 +1,6 @@
-"""The predictions: studies run as a user runs them, and public functions where no study exists."""
+"""The predictions: from studies, run as a user runs them, and from public functions where no study
+exists.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ from pinstress import changed_study, load_study
 from reports.data.results import Results
 
 IN_CONTACT, AT_ULTIMATE = " in contact", " at ultimate load"
-# What a study that prescribes its loads changes to have its joint solved, as is the default.
+# Changes of a study that prescribes its loads, by which its joint is solved, as is the default.
 CONTACT = {
     "analysis.joints": "contact",
     "analysis.model": "auto",
@@ -30,19 +32,20 @@ CONTACT = {
 }
 SLOW_STUDIES = "round_head", f"affdl_joint{IN_CONTACT}", f"niu_axial{IN_CONTACT}"
 RATIOS = 1.5, 2.0  # e/D of the bars
-BORE, THICKNESS, KSI_AREA = 0.5, 0.25, 125.0  # in; lbf of 1 ksi on the bearing area
+BORE, THICKNESS, KSI_AREA = 0.5, 0.25, 125.0  # in; force of 1 ksi on the bearing area, lbf
 LIMIT, ULTIMATE = "lug, limit load", "lug, ultimate load"
 Tell = Callable[[str], object]
 
 
 def everything(tell: Tell) -> list[Comparison]:
-    """All comparisons, which take six minutes."""
+    """Return all comparisons, which takes six minutes."""
     return [*broken_bars(tell), *in_print(tell=tell)]
 
 
 def in_print(slow: bool = True, tell: Tell = lambda _: None) -> list[Comparison]:
-    """The comparisons with printed numbers and exact ones. slow: also of studies that take more
-    than a second.
+    """Return the comparisons with printed and exact numbers.
+
+    slow: whether to include studies that take more than a second.
     """
     wanted = [p for p in printed_numbers() if slow or p.study not in SLOW_STUDIES]
     plane = plane_predictions()
@@ -56,9 +59,10 @@ def in_print(slow: bool = True, tell: Tell = lambda _: None) -> list[Comparison]
 
 
 def broken_bars(tell: Tell = lambda _: None, every: int = 1) -> list[Comparison]:
-    """Limit load at yield and ultimate load of Moore's bars over the loads that broke them.
+    """Return the limit load at yield and the ultimate load of Moore's bars over the loads that
+    broke them.
 
-    every: one bar in so many.
+    every: n, to take every n-th bar only.
     """
     study = load_study(STUDIES / "moore1948.toml")
     cases = [(row, ratio) for row in records("moore1948.csv") for ratio in RATIOS]
@@ -83,7 +87,7 @@ def broken_bars(tell: Tell = lambda _: None, every: int = 1) -> list[Comparison]
 
 @cache
 def _run(study: str) -> Results:
-    """The results of a study of studies/evidence, once."""
+    """Return the results of a study of studies/evidence, which is run once."""
     name = study.removesuffix(IN_CONTACT)
     loaded = load_study(STUDIES / f"{name}.toml")
     if name != study:
@@ -92,7 +96,10 @@ def _run(study: str) -> Results:
 
 
 def _read(results: Results, printed: Printed) -> float:
-    """What a printed number is compared with, in the study's units."""
+    """Return the number that is compared with a printed one, in the study's units.
+
+    Raises: LookupError if the study has no such check.
+    """
     every = [m.margin for m in results.margins]
     every += [check for pin in results.pins for check in pin.hand_checks]
     governing = (m for m in every if (m.method, m.at) == (printed.check, printed.at) and m.governs)
@@ -109,6 +116,6 @@ def _read(results: Results, printed: Printed) -> float:
 
 
 def _of_work(margin: Margin, symbol: str) -> float:
-    """A quantity of the printed work of a check, by its symbol."""
+    """Return a quantity of the printed working of a check, by its symbol."""
     quantities = (q for w in margin.work for q in (w.result, *w.quantities))
     return next(q.value for q in quantities if q.symbol == symbol)

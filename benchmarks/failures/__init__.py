@@ -1,4 +1,4 @@
-"""The gallery of failures: where methods go wrong, and what pinstress says there."""
+"""The gallery of failures: cases in which methods go wrong, and pinstress's answers to them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ FAMILIES = (corners, locking, elements, shapes, holding, mechanisms)
 
 
 def entries() -> tuple[Entry, ...]:
-    """All, in the order of the page."""
+    """Return all entries, in the order of the page."""
     return tuple(entry for family in FAMILIES for entry in family.entries())
 
 
 def failures() -> str:
-    """Compute all and draw their pictures; returns the text of the page."""
+    """Compute all entries and draw their pictures; return the text of the page."""
     write()
     found = entries()
     PICTURES.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,6 @@
-"""The mesh files of studies/failures: a sound one, and what is made of it by moving one node."""
+"""The mesh files of studies/failures, which are made from a sound mesh by moving one node or
+renumbering.
+"""
 
 from __future__ import annotations
 
@@ -17,24 +19,26 @@ from pinbase.arrays import Ints
 MM = 1e-3
 SHAFT = Pin("P", (Segment(40 * MM, 20 * MM, connection="shaft"), Segment(20 * MM, 20 * MM)))
 ROUGH = MeshSize(across=2.0, corner=1.0)
-DIGITS = 9  # of coordinates, mm
-_TAGS = ("physical", "geometrical")  # without which meshio warns
+DIGITS = 9  # decimals of coordinates, mm
+_TAGS = ("physical", "geometrical")  # meshio warns if they are missing
 FOLDED, INSIDE_OUT, TURNED = "inverted_element", "inside_out", "turned_numbers"
 
 
 def sound() -> tuple[Floats, Ints]:
-    """Points (N, 3) mm and quadratic cells (M, 10) of a shaft."""
+    """Return points (N, 3), mm, and quadratic cells (M, 10) of a shaft."""
     space = Discretisation(solid_mesh(SHAFT, ROUGH).mesh)
     return np.round(space.nodes / MM, DIGITS), space.elements
 
 
 def inner(points: Floats, count: int) -> int:
-    """Of the first `count` points that nearest to the axis a diameter from the clamp."""
+    """Return the index of the point, of the first `count`, nearest to the axis at a diameter from
+    the clamp.
+    """
     return int(np.linalg.norm(points[:count] - [0.0, 0.0, 20.0], axis=1).argmin())
 
 
 def write() -> tuple[Path, ...]:
-    """All files, the same on every run."""
+    """Write all files, which are the same on every run; return their paths."""
     points, cells = sound()
     corners = cells[:, :4]
     count = int(corners.max()) + 1

@@ -1,5 +1,5 @@
-"""Places without a maximum: a sharp corner, the edge of a clamp, that of a uniform load. And the
-edge of a bearing pressure, where no node sees it.
+"""Places without a maximum: a sharp corner, the edge of a clamp, and that of a uniform load; and
+the edge of a bearing pressure, where the maximum is at no node.
 """
 
 from __future__ import annotations
@@ -23,15 +23,19 @@ from reports.data.row import PinResult
 from reports.format.numbers import engineering
 
 ACROSS = (5.0, 10.0, 20.0, 40.0)
-CLOSEST = 1e-4  # element at the corner, of the diameter
+CLOSEST = 1e-4  # size of the element at the corner over the diameter
 NU = 0.3
 WILLIAMS = "M. L. Williams, J. Appl. Mech. 19 (1952) 526"
 
 
 @dataclass(frozen=True)
 class Growth:
-    """meshes: of one element size each. distance (J,) m, stress (J,) Pa: towards the place on a
-    graded mesh. theory: exponent. zone: what pinstress found there, in the row `found`.
+    """The growth of stress at a singular place.
+
+    meshes: each of one element size.
+    distance, stress: (J,) m and (J,) Pa, towards the place on a graded mesh.
+    theory: exponent.
+    zone: the zone that pinstress found there, in the row `found`.
     """
 
     meshes: tuple[Mesh, ...]
@@ -43,13 +47,13 @@ class Growth:
 
     @property
     def growth(self) -> float:
-        """Of the peak at the last halving of the elements."""
+        """The ratio of the peaks before and after the last halving of the elements."""
         return self.meshes[-1].maximum / self.meshes[-2].maximum
 
 
 @cache
 def growth(name: str, kind: str, theory: float, across: tuple[float, ...] = ACROSS) -> Growth:
-    """The peak on ever finer meshes, and the stress towards the place, of a study's pin."""
+    """Return the peaks of a study's pin on ever finer meshes, and the stress towards the place."""
     found = row(name)
     (zone,) = (z for z in found.singular_at if z.kind == kind)
     x, y, z = zone.location
@@ -59,27 +63,32 @@ def growth(name: str, kind: str, theory: float, across: tuple[float, ...] = ACRO
 
 
 def sharp_corner() -> Growth:
-    """An inner corner of 270 degrees."""
+    """Return the growth at an inner corner of 270 degrees."""
     theory = plane_exponent(1.5 * np.pi, NU, "free", "free")
     return growth("sharp_corner", "a sharp corner", theory)
 
 
 def clamped_edge() -> Growth:
-    """The rim of a clamped face, 90 degrees."""
+    """Return the growth at the rim of a clamped face, 90 degrees."""
     theory = plane_exponent(0.5 * np.pi, NU, "clamped", "free")
     return growth("clamped_edge", "the edge of a clamp", theory)
 
 
 def looks_converged() -> Growth:
-    """A clamp's edge that coarse meshes do not see beside a fillet."""
+    """Return the growth at the edge of a clamp next to a fillet, which hides it on coarse
+    meshes.
+    """
     theory = plane_exponent(0.5 * np.pi, NU, "clamped", "free")
     return growth("looks_converged", "the edge of a clamp", theory, (3.0, 6.0, 12.0, 24.0, 48.0))
 
 
 @dataclass(frozen=True)
 class LoadEdge:
-    """sizes (K,) m of elements; shear (K,) Pa at the edge of the uniform load; slope: of the shear
-    by log(1/distance) on a graded mesh, Pa; theory: the same; found: what pinstress says.
+    """The shear at the edge of a uniform load.
+
+    sizes: (K,) of elements, m. shear: (K,) at the edge, Pa.
+    slope: of the shear over log(1/distance) on a graded mesh, Pa. theory: the same by theory.
+    found: pinstress's result.
     """
 
     sizes: Floats
@@ -91,8 +100,10 @@ class LoadEdge:
 
 @cache
 def load_edge() -> LoadEdge:
-    """The circumferential shear at the edge of the middle band, whose traction q T jumps by the
-    difference of the bands' tractions: the antiplane half plane has q / pi log(1/d).
+    """Return the circumferential shear at the edge of the middle band.
+
+    The traction q T jumps there by the difference of the bands' tractions; the antiplane half plane
+    has the shear q / pi log(1/d).
     """
     name = "load_edge"
     pin, loads = revolved(name), task(name).loads[0]
@@ -120,7 +131,12 @@ def load_edge() -> LoadEdge:
 
 @dataclass(frozen=True)
 class PressureEdge:
-    """meshes: of one size each. truth: Pa, on a far finer one. found: what pinstress says."""
+    """The largest stress at the edge of a pressure.
+
+    meshes: each of one size.
+    truth: on a much finer mesh, Pa.
+    found: pinstress's result.
+    """
 
     meshes: tuple[Mesh, ...]
     truth: float
@@ -129,13 +145,13 @@ class PressureEdge:
 
 @cache
 def pressure_edge() -> PressureEdge:
-    """Pressures that meet, on opposite sides of a pin."""
+    """Return the results for pressures that meet on opposite sides of a pin."""
     name = "pressure_edge"
     return PressureEdge(tuple(even(name, n)[0] for n in ACROSS), finest(name), row(name))
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     return (
         _entry(
             sharp_corner(),
@@ -182,7 +198,7 @@ def _entry(g: Growth, name: str, title: str, physics: str) -> Entry:
 
 
 def _outside(found: PinResult, truth: float) -> str:
-    """How good the surface's value outside the excluded zones is."""
+    """Return a sentence on the accuracy of the surface's value outside the excluded zones."""
     assert found.places is not None
     value = found.places.surface.max_von_mises
     share = 100 * abs(value / truth - 1)

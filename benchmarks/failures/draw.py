@@ -1,4 +1,4 @@
-"""What the pictures of the gallery share, beside benchmarks.style."""
+"""Elements of the pictures of the gallery that benchmarks.style lacks."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def note(
     color: str = INK,
     align: str = "left",
 ) -> None:
-    """Text beside a point, `shift` in points."""
+    """Write text next to a point. shift: in points."""
     axes.annotate(
         text, (x, y), xytext=shift, textcoords="offset points", color=color, fontsize=8.5,
         ha=align, va="center", linespacing=1.15,
@@ -29,13 +29,13 @@ def note(
 
 
 def ratio_line(axes: Axes, x: Floats, y: Floats, text: str) -> None:
-    """A line to compare with, named at its second point."""
+    """Draw a line for comparison, with its name at its second point."""
     axes.plot(x, y, **line_style(1))
     note(axes, float(x[1]), float(y[1]), text, (8.0, -10.0), line_style(1)["color"])
 
 
 def decades(*axes: Axes, which: str = "both") -> None:
-    """Tick labels of logarithmic axes as plain numbers, those in between bare."""
+    """Label the ticks of logarithmic axes with plain numbers; minor ticks have no labels."""
     for one in axes:
         for name, axis in (("x", one.xaxis), ("y", one.yaxis)):
             if which in (name, "both"):
@@ -44,7 +44,7 @@ def decades(*axes: Axes, which: str = "both") -> None:
 
 
 def ticks(axes: Axes, x: Floats | None = None, y: tuple[float, ...] = ()) -> None:
-    """Marks of logarithmic axes at these values only."""
+    """Set the ticks of logarithmic axes at these values only."""
     for axis, values in ((axes.xaxis, x), (axes.yaxis, y)):
         if values is not None and len(values):
             axis.set_ticks(

@@ -1,4 +1,4 @@
-"""Elements that are no elements: folded over their neighbours, bent inside out."""
+"""Invalid elements: folded over their neighbours, or bent inside out."""
 
 from __future__ import annotations
 
@@ -30,9 +30,13 @@ MPA = 1e6
 
 @dataclass(frozen=True)
 class Broken:
-    """volume (m^3), the sum of all elements' sizes; tip: displacement (m) of the loaded band, and
-    peak: largest von Mises stress (Pa) half-way between clamp and band, which a program finds that
-    does not look at signs; shape (M,): least over largest det J. told: what pinstress says.
+    """The results on a mesh file, computed without looking at the signs of det J.
+
+    peak: largest von Mises stress half-way between clamp and band, Pa.
+    volume: the sum of the sizes of all elements, m^3.
+    shape: (M,), least over largest det J.
+    folds: number of folds.
+    told: pinstress's message; empty if it accepts the file.
     """
 
     volume: float
@@ -43,7 +47,7 @@ class Broken:
 
 
 def read(name: str) -> Quadratic:
-    """A mesh file without any check."""
+    """Return a mesh file without any check."""
     import meshio
 
     found = meshio.read(STUDIES / f"{name}.msh")
@@ -53,7 +57,7 @@ def read(name: str) -> Quadratic:
 
 @cache
 def broken(name: str) -> Broken:
-    """A file of studies/failures, solved all the same."""
+    """Return the results on a file of studies/failures, solved although it may be broken."""
     made = read(name)
     sound = pin(study(TURNED), "P")
     assert isinstance(sound, SolidBody)
@@ -70,7 +74,7 @@ def broken(name: str) -> Broken:
 
 @cache
 def refusal(name: str) -> str:
-    """What pinstress says of the study; empty if it takes it."""
+    """Return the message with which pinstress rejects a study; empty if it accepts it."""
     try:
         pin(study(name), "P")
     except MeshError as error:
@@ -79,7 +83,7 @@ def refusal(name: str) -> str:
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     sound, over, out = broken(TURNED), broken(FOLDED), broken(INSIDE_OUT)
     return (
         Entry(

@@ -1,4 +1,4 @@
-"""One failure of the gallery: what docs/failures.md shows of it."""
+"""One failure of the gallery: the contents of its section in docs/failures.md."""
 
 from __future__ import annotations
 
@@ -13,9 +13,14 @@ Draw = Callable[[Figure, list[Axes]], None]
 
 @dataclass(frozen=True)
 class Entry:
-    """name: of the picture's file. physics, naive, truth, says: Markdown, the last what pinstress
-    says instead. commands: what shows it. picture: in words, for those who do not see it. panels:
-    of the picture, side by side, which `draw` fills.
+    """A failure of the gallery; texts are in Markdown.
+
+    name: of the file of the picture.
+    physics, naive, truth: the mechanics, the naive result and the true one.
+    says: the answer of pinstress.
+    commands: those that show it.
+    picture: a description in words.
+    draw: draws into `panels` axes side by side.
     """
 
     name: str
@@ -31,7 +36,7 @@ class Entry:
 
     @property
     def text(self) -> str:
-        """Its section of the page."""
+        """The section of the page."""
         shown = "\n".join(self.commands)
         return (
             f"## {self.title}\n\n{self.physics}\n\n"

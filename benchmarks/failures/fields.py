@@ -1,4 +1,4 @@
-"""Naive meshes of a study's pin, without what pinstress knows of the places where stress grows."""
+"""Naive meshes of a study's pin, without pinstress's knowledge of the places where stress grows."""
 
 from __future__ import annotations
 
@@ -18,14 +18,18 @@ from geometry import Pin
 from geometry.mesh.section_mesh import MeridianMesh, SectionSize, Spot, meridian_mesh
 
 MPA = 1e6
-BLIND = 1e-6  # elements along a fillet: no size is asked for there
-GROWTH = 0.5  # of elements from fillets on
+BLIND = 1e-6  # elements along a fillet, so that none is refined there
+GROWTH = 0.5  # of elements away from fillets
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """What one mesh says: size of its elements (m), unknowns, largest von Mises stress (Pa)
-    anywhere, at (r, z) m.
+    """The results on one mesh.
+
+    size: of its elements, m.
+    unknowns: their number.
+    maximum: largest von Mises stress anywhere, Pa.
+    at: its place (r, z), m.
     """
 
     size: float
@@ -35,15 +39,17 @@ class Mesh:
 
 
 def revolved(name: str, pin: str = "P") -> Pin:
-    """The pin, a body of revolution."""
+    """Return the pin of a study, which must be a body of revolution."""
     found = task(name, pin).pin
     assert isinstance(found, Pin)
     return found
 
 
 def even(name: str, across: float, case: int = 0) -> tuple[Mesh, MeridianFields]:
-    """Quadratic elements of one size, `across` of them over the thinnest diameter or wall, but four
-    along a fillet at least.
+    """Return the results and the fields on quadratic elements of one size.
+
+    across: the number of elements over the thinnest diameter or wall. A fillet has a quarter of
+    this number of elements, and at least two.
     """
     pin, held, loads = revolved(name), task(name).clamps, task(name).loads[case]
     section = meridian_mesh(pin, SectionSize(across, max(across / 4.0, 2.0), GROWTH))
@@ -55,7 +61,9 @@ def even(name: str, across: float, case: int = 0) -> tuple[Mesh, MeridianFields]
 
 
 def evenly(name: str, pin: str, across: float) -> float:
-    """Largest von Mises stress (Pa) on one mesh of one size, which sees no fillet."""
+    """Return the largest von Mises stress, Pa, on one mesh of one size, which does not resolve
+    fillets.
+    """
     body, found = revolved(name, pin), task(name, pin)
     fields = _solved(
         name,
@@ -76,8 +84,8 @@ def _solved(
 
 @cache
 def finest(name: str, pin: str = "P", case: int = 0, beyond: int = BEYOND) -> float:
-    """Maximum (Pa) outside singular places on a mesh of four times the unknowns of pinstress's last
-    (twice for `beyond` 1).
+    """Return the maximum outside singular places, Pa, on a mesh with four times the unknowns of
+    pinstress's last one (twice for `beyond` 1).
     """
     found = task(name, pin)
     loads = found.loads[case]
@@ -87,15 +95,20 @@ def finest(name: str, pin: str = "P", case: int = 0, beyond: int = BEYOND) -> fl
 
 
 def graded(name: str, r: float, z: float, size: float) -> MeridianFields:
-    """On a mesh with elements `size` (m) small at one point of the outline."""
+    """Return the fields on a mesh with elements of the given size, m, at one point of the
+    outline.
+    """
     pin, held, loads = revolved(name), task(name).clamps, task(name).loads[0]
     section = meridian_mesh(pin, SectionSize(4.0), [Spot(r, z, size, 0.2 * r)])
     return _solved(name, pin, section, held, loads)
 
 
 def towards(name: str, r: float, z: float, size: float) -> tuple[Floats, Floats]:
-    """Distances (J,) m from a point of the outline, ascending, and the von Mises stress (J,) Pa
-    there, along that side on which it is larger, on a mesh with elements `size` (m) small there.
+    """Return distances (J,), m, from a point of the outline, ascending, and the von Mises stress
+    (J,), Pa.
+
+    The stress is that along the side of the point where it is larger, on a mesh with elements of
+    the given size, m, at the point.
     """
     fields, loads = graded(name, r, z, size), task(name).loads[0]
     skin = np.arange(fields.skin)

@@ -1,4 +1,4 @@
-"""How a pin is held: not at all, by rigid clamps or soft lugs; and what its support carries."""
+"""Supports of a pin: none, rigid clamps or soft lugs; and the reactions of a support."""
 
 from __future__ import annotations
 
@@ -37,13 +37,17 @@ from reports.format.numbers import engineering, ten_to
 
 ACROSS = (3.0, 4.0, 5.0, 6.0, 8.0)
 FORCE = 1e4  # N
-MESHES = (2.0, 3.0, 4.0, 6.0)  # elements across, of the solid
+MESHES = (2.0, 3.0, 4.0, 6.0)  # elements over the diameter of the solid
 
 
 @dataclass(frozen=True)
 class Free:
-    """across (K,): elements; stress (K,) Pa and motion (K,) m of a pin that nothing holds, as an LU
-    factorisation has them without a word; push: what is out of balance, N; found: our answer.
+    """The results for an unconstrained pin, as an LU factorisation gives them without an error.
+
+    across: (K,) elements over the diameter.
+    stress: (K,) Pa. motion: (K,) displacement, m.
+    push: the resultant of the loads, N.
+    found: pinstress's result.
     """
 
     across: Floats
@@ -55,14 +59,14 @@ class Free:
 
 @cache
 def free_pin() -> Free:
-    """The loads of the study on the singular matrix of harmonic 1."""
+    """Return the results for the loads of the study on the singular matrix of harmonic 1."""
     stress, motion = zip(*(_unheld(n) for n in ACROSS), strict=True)
     push = float(np.abs(task("free_pin").loads[0].forces[0].sum(axis=0)).max())
     return Free(np.array(ACROSS), np.array(stress), np.array(motion), push, row("free_pin"))
 
 
 def _unheld(across: float) -> tuple[float, float]:
-    """Largest von Mises stress (Pa) and displacement (m)."""
+    """Return the largest von Mises stress, Pa, and the largest displacement, m."""
     pin, loads, steel = revolved("free_pin"), task("free_pin").loads[0], material_of("free_pin")
     space = Section(meridian_mesh(pin, SectionSize(across)))
     outline = Outline(space)
@@ -88,7 +92,10 @@ def _axis(space: Section) -> Floats:
 
 
 def _summed(outline: Outline, loads: PinLoads) -> tuple[Floats, Floats]:
-    """Forces on the unknowns (n,) and tractions (E, 3, 3) of the whole case, along y as along x."""
+    """Return the forces on the unknowns (n,) and the tractions (E, 3, 3) of the whole case.
+
+    The loads along y are applied along x.
+    """
     pin, y = revolved("free_pin"), loads.forces[0, :, 1]
     parts = [(traction(pin, UnitLoad(name, "force", 1)),) for name in loads.surfaces]
     R, T, Z = sum(f * outline.forces(part, 1) for f, part in zip(y, parts, strict=True)).T
@@ -98,8 +105,11 @@ def _summed(outline: Outline, loads: PinLoads) -> tuple[Floats, Floats]:
 
 @dataclass(frozen=True)
 class Support:
-    """across (K,) elements; surface, residual (K,): errors of the clamp's force (relative) from the
-    stresses on its face, and from the residual of the system.
+    """The errors of the force of a clamp.
+
+    across: (K,) elements over the diameter. unknowns: (K,).
+    surface, residual: (K,) relative errors by the stresses on its face, and by the residual of the
+    system.
     """
 
     across: Floats
@@ -110,7 +120,7 @@ class Support:
 
 @cache
 def reactions() -> Support:
-    """The clamp of the study clamped_edge, on solid meshes."""
+    """Return the errors for the clamp of the study clamped_edge, on solid meshes."""
     name = "clamped_edge"
     pin, steel = revolved(name), material_of(name)
     unknowns, surface, residual = [], [], []
@@ -132,13 +142,13 @@ def reactions() -> Support:
 
 
 def _pull(stress: Floats, normals: Floats) -> Floats:
-    """Traction (P, 6, 3) of stress (P, 6, 6): xx, yy, zz, yz, xz, xy."""
+    """Return the traction (P, 6, 3) of stress (P, 6, 6), components xx, yy, zz, yz, xz, xy."""
     tensor = stress[..., [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
     return np.asarray(np.einsum("pqab,pqb->pqa", tensor, normals))
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     return (_free(free_pin()), _supports(), _reactions(reactions()))
 
 

@@ -1,4 +1,4 @@
-"""Elements that are too stiff: linear ones in bending, and all but mixed ones near nu = 1/2."""
+"""Elements that lock: linear ones in bending, and all but mixed ones near nu = 1/2."""
 
 from __future__ import annotations
 
@@ -53,15 +53,19 @@ from reports.format.numbers import engineering
 
 FORCE = 5e3  # N
 ACROSS = (2.0, 3.5, 6.0)  # tetrahedra over the diameter
-MIDDLE = (0.02, 0.05)  # m: where the shaft's stress is read
-FINE = 16.0  # elements over the diameter of the section that is the truth
+MIDDLE = (0.02, 0.05)  # m, between which the shaft's stress is read
+FINE = 16.0  # elements over the diameter on the section mesh that gives the true values
 COARSE, REFINED = SectionSize(6.0, 8.0, 0.3), SectionSize(6.0, 20.0, 0.4)
 
 
 @dataclass(frozen=True)
 class Bending:
-    """across (K,); deflection of the tip, m, and stress in the middle, Pa, of linear and quadratic
-    tetrahedra on the same meshes; and of the section's fine mesh.
+    """The deflection of the tip, m, and the stress in the middle, Pa.
+
+    across: (K,) elements over the diameter.
+    linear, quadratic: (K, 2) of linear and quadratic tetrahedra on the same meshes.
+    truth: (2,) of the fine mesh of the section.
+    found: pinstress's result.
     """
 
     across: Floats
@@ -73,7 +77,7 @@ class Bending:
 
 @cache
 def bending() -> Bending:
-    """Rows (K, 2): deflection and stress."""
+    """Return the deflections and stresses of all meshes."""
     name = "linear_elements"
     both = [_tetrahedra(n) for n in ACROSS]
     pin = revolved(name)
@@ -88,7 +92,7 @@ def bending() -> Bending:
 
 
 def _tetrahedra(across: float) -> tuple[Floats, Floats]:
-    """Deflection and stress of linear and of quadratic elements on one mesh."""
+    """Return deflection and stress of linear and of quadratic elements on one mesh."""
     name = "linear_elements"
     pin, steel = revolved(name), material_of(name)
     mesh = solid_mesh(pin, MeshSize(across=across, corner=1.0))
@@ -111,8 +115,10 @@ def _in_middle(x: Floats) -> Any:
 
 
 def _linear(mesh: Any, material: Material, forces: Floats) -> tuple[Floats, Floats]:
-    """Displacements (V, 3) and stresses (V, 6), averaged, of linear tetrahedra with the corners of
-    a quadratic mesh, held at z = 0; forces (N, 3) of middle nodes go to the ends of their edges.
+    """Return displacements (V, 3) and averaged stresses (V, 6) of linear tetrahedra.
+
+    The elements have the corners of a quadratic mesh and are held at z = 0; the forces (N, 3) of
+    mid-edge nodes are divided between the ends of their edges.
     """
     corners = MeshTet1(np.ascontiguousarray(mesh.doflocs[:, : mesh.nvertices]), mesh.t)
     f = forces[: mesh.nvertices].copy()
@@ -130,7 +136,7 @@ def _linear(mesh: Any, material: Material, forces: Floats) -> tuple[Floats, Floa
 
 
 def _averaged(cells: Any, values: Floats) -> Floats:
-    """Means (V, C) at corners of values (M, C) of elements."""
+    """Return the means (V, C) at corners of the values (M, C) of elements."""
     count = np.bincount(cells.ravel())
     total = np.zeros((len(count), values.shape[1]))
     for corner in cells:
@@ -140,8 +146,9 @@ def _averaged(cells: Any, values: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Ratio:
-    """At one Poisson's ratio: largest von Mises stress (MPa) of linear triangles, of mixed elements
-    (the truth), and what pinstress says.
+    """The largest von Mises stress at one Poisson's ratio, MPa.
+
+    naive: of linear triangles. truth: of mixed elements. found: pinstress's result.
     """
 
     nu: float
@@ -152,7 +159,7 @@ class Ratio:
 
 @cache
 def incompressible() -> tuple[Ratio, ...]:
-    """A shaft pulled between thicker ends."""
+    """Return the results for a shaft pulled between thicker ends."""
     name = "incompressible"
     out = []
     for t in plan(name).tasks:
@@ -170,7 +177,7 @@ def incompressible() -> tuple[Ratio, ...]:
 
 
 def _pulled(name: str, pin_name: str, size: SectionSize) -> tuple[Section, Floats]:
-    """A mesh, and forces (N, 2) along r and z for one radian."""
+    """Return a mesh, and the forces (N, 2) along r and z for one radian."""
     pin, loads = revolved(name, pin_name), task(name, pin_name).loads[0]
     space = Section(meridian_mesh(pin, size))
     outline, forces = Outline(space), np.zeros((len(space.nodes), 3))
@@ -180,7 +187,7 @@ def _pulled(name: str, pin_name: str, size: SectionSize) -> tuple[Section, Float
 
 
 def _strain(u: Any, w: Any) -> list[Any]:
-    """rr, tt, zz, rz of a displacement along r and z."""
+    """Return the strains rr, tt, zz, rz of a displacement along r and z."""
     g = u.grad
     return [g[0, 0], u[0] / w.x[0], g[1, 1], 0.5 * (g[0, 1] + g[1, 0])]
 
@@ -195,14 +202,14 @@ def _deviator(lam: float, mu: float) -> BilinearForm:
 
 
 def _size(strain: list[Any], mu: float) -> Floats:
-    """Von Mises stress from strains, which needs no pressure."""
+    """Return the von Mises stress from strains, which does not depend on the pressure."""
     mean = sum(strain[:3]) / 3.0
     square = sum((e - mean) ** 2 for e in strain[:3]) + 2.0 * strain[3] ** 2
     return np.asarray(2.0 * mu * np.sqrt(1.5 * square))
 
 
 def _triangles(space: Section, forces: Floats, material: Material) -> float:
-    """Of linear triangles, averaged at their corners."""
+    """Return the largest stress of linear triangles, averaged at their corners."""
     mesh, count = space.section.mesh, space.section.mesh.nvertices
     corners = MeshTri1(np.ascontiguousarray(mesh.doflocs[:, :count]), mesh.t)
     f = forces[:count].copy()
@@ -212,7 +219,7 @@ def _triangles(space: Section, forces: Floats, material: Material) -> float:
     lam, mu = material.lame
     K = _deviator(lam, mu).assemble(basis).tocsr()
     u = _held(K, f.ravel(), corners.p[0], count)
-    g = np.asarray(basis.interpolate(u).grad).mean(axis=3)  # the same all over an element
+    g = np.asarray(basis.interpolate(u).grad).mean(axis=3)  # constant within an element
     around = np.mean(u[0::2][corners.t] / np.maximum(corners.p[0][corners.t], 1e-9), axis=0)
     around = np.where(corners.p[0][corners.t].min(axis=0) < 1e-9, g[0, 0], around)
     size = _size([g[0, 0], around, g[1, 1], 0.5 * (g[0, 1] + g[1, 0])], mu)
@@ -220,7 +227,9 @@ def _triangles(space: Section, forces: Floats, material: Material) -> float:
 
 
 def _mixed(space: Section, forces: Floats, material: Material) -> float:
-    """Of Taylor and Hood's elements, whose pressure (over mu) is an unknown of its own."""
+    """Return the largest stress of Taylor-Hood elements, whose pressure (over mu) is an unknown of
+    its own.
+    """
     lam, mu = material.lame
     basis = Basis(space.section.mesh, ElementVector(ElementTriP2()), intorder=4)
     pressure = basis.with_element(ElementTriP1())
@@ -245,7 +254,11 @@ def _mixed(space: Section, forces: Floats, material: Material) -> float:
 
 
 def _held(K: Any, f: Floats, r: Floats, nodes: int) -> Floats:
-    """Unknowns 2 k + c, with no motion along r on the axis, and one point's along z held."""
+    """Return the solution of K u = f, with no motion along r on the axis, and one point held along
+    z.
+
+    The unknowns are 2 k + c for node k and component c.
+    """
     fixed = np.append(2 * np.flatnonzero(r < 1e-12), 1)
     free = np.setdiff1d(np.arange(K.shape[0]), fixed)
     u = np.zeros(K.shape[0])
@@ -254,7 +267,7 @@ def _held(K: Any, f: Floats, r: Floats, nodes: int) -> Floats:
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     return (_bending(bending()), _incompressible(incompressible()))
 
 

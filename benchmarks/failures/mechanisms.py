@@ -1,4 +1,4 @@
-"""Linkages without one answer: dead points, change points, redundant links, jammed guides."""
+"""Linkages without a unique answer: dead points, change points, redundant links, jammed guides."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from pinstress.study.reading.errors import InputError
 from reports.format.numbers import engineering, ten_to
 
 COUPLE = 100.0  # N m on the rocker
-LENGTHS = (1.0, 0.9, 0.5, 0.6)  # of the toggle: ground, crank, coupler, rocker, m
+LENGTHS = (1.0, 0.9, 0.5, 0.6)  # ground, crank, coupler and rocker of the toggle, m
 PUSH = 100.0  # N on the block
-STEPS = (11, 15)  # odd: none lands on the change point itself
+STEPS = (11, 15)  # odd, so that no step ends at the change point itself
 Angles = tuple[float, float]
 
 
 @cache
 def refusal(name: str) -> str:
-    """The message with which pinstress rejects a study.
+    """Return the message with which pinstress rejects a study.
 
-    Raises: AssertionError when it does not.
+    Raises: AssertionError if it does not.
     """
     try:
         (case,) = study(name).table.case
@@ -42,10 +42,14 @@ def refusal(name: str) -> str:
 
 @dataclass(frozen=True)
 class Toggle:
-    """short (K,) rad before the dead point; force (K,) N in the rocker's joint, exact (K,) by the
-    transmission angle; condition (K,) of the loop equations; at: crank angles (degrees) with ever
-    more digits of the dead point, and the force (N) of the formula there. dead, told: the dead
-    point by the cosine law and as pinstress has it, degrees.
+    """The forces of a linkage near its dead point.
+
+    short: (K,) angles before the dead point, rad.
+    force: (K,) in the rocker's joint, N. exact: (K,) by the transmission angle, N.
+    condition: (K,) of the loop equations.
+    at: crank angles, degrees, with ever more digits of the dead point, each with the force by the
+    formula, N.
+    dead, told: the dead point by the law of cosines and by pinstress, degrees.
     """
 
     short: Floats
@@ -58,7 +62,9 @@ class Toggle:
 
 
 def _transmission(crank: float) -> float:
-    """Force (N) between coupler and rocker under the couple, by the angle between the two."""
+    """Return the force between coupler and rocker under the couple, N, by the angle between the
+    two.
+    """
     ground, a, b, c = LENGTHS
     far = a * a + ground * ground - 2.0 * a * ground * np.cos(crank)
     cosine = (b * b + c * c - far) / (2.0 * b * c)
@@ -67,7 +73,7 @@ def _transmission(crank: float) -> float:
 
 @cache
 def toggle() -> Toggle:
-    """Towards the dead point, at rest."""
+    """Return the forces towards the dead point, at rest."""
     ground, a, b, c = LENGTHS
     dead = float(np.arccos((a * a + ground * ground - (b + c) ** 2) / (2.0 * a * ground)))
     mechanism = linkage(study("toggle"))
@@ -92,19 +98,23 @@ def toggle() -> Toggle:
 
 @dataclass(frozen=True)
 class Change:
-    """Rocker angles by crank angle, degrees: what plain Newton finds with so many steps."""
+    """The rocker angles by crank angle, degrees, that a plain Newton method finds, by number of
+    steps.
+    """
 
     crank: dict[int, Floats]
     rocker: dict[int, Floats]
 
     @property
     def ends(self) -> dict[int, float]:
-        """Where each run ends."""
+        """The rocker angle at the end of each run, degrees."""
         return {steps: float(angle[-1]) for steps, angle in self.rocker.items()}
 
 
 def _newton(crank: float, guess: Angles) -> Angles:
-    """Coupler and rocker angle of the parallelogram, from a guess, by plain Newton."""
+    """Return the angles of coupler and rocker of the parallelogram, from a guess, by a plain Newton
+    method.
+    """
     r, x = 0.5, np.array(guess)
     for _ in range(50):
         gap = r * np.exp(1j * crank) + np.exp(1j * x[0]) - 1.0 - r * np.exp(1j * x[1])
@@ -118,7 +128,11 @@ def _newton(crank: float, guess: Angles) -> Angles:
 
 @cache
 def change_point(counts: tuple[int, ...] = STEPS) -> Change:
-    """Steps of equal size through the position in which all links are in line."""
+    """Return the runs through the position in which all links are collinear, in steps of equal
+    size.
+
+    counts: the numbers of steps.
+    """
     crank, rocker = {}, {}
     for steps in counts:
         angles = np.radians(np.linspace(60.0, -60.0, steps + 1))
@@ -133,7 +147,11 @@ def change_point(counts: tuple[int, ...] = STEPS) -> Change:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces N on two links: total; smallest: of least squares; ruled: by the study's rule."""
+    """The forces on two parallel links, N.
+
+    total: their sum.
+    smallest: by least squares. ruled: by the study's rule, with the stiffnesses.
+    """
 
     total: float
     smallest: tuple[float, float]
@@ -143,7 +161,9 @@ class Shares:
 
 @cache
 def shares() -> Shares:
-    """The lever on two links: F1 + F2 = P L / l, one equation with two unknowns."""
+    """Return the forces of a lever on two links: F1 + F2 = P L / l, one equation with two
+    unknowns.
+    """
     arm, reach, load = 0.5, 1.0, 900.0
     least = np.linalg.lstsq(np.array([[arm, arm]]), np.array([load * reach]))[0]
     shared = study("redundant_shared")
@@ -160,8 +180,11 @@ def shares() -> Shares:
 
 @dataclass(frozen=True)
 class Jamming:
-    """friction (K,), force (K,) N in the rod by the formula; ours: the same by pinstress, NaN where
-    it refuses. limit: friction from which on nothing agrees.
+    """The force in the rod of a guide that jams, N.
+
+    friction: (K,) coefficients.
+    force: (K,) by the formula. ours: (K,) by pinstress, NaN where it refuses.
+    limit: the coefficient from which there is no solution.
     """
 
     friction: Floats
@@ -172,7 +195,9 @@ class Jamming:
 
 @cache
 def jamming() -> Jamming:
-    """Balance of the block: F (cos phi - mu sin phi) = P, with the rod at phi."""
+    """Return the forces by the balance of the block, F (cos phi - mu sin phi) = P, with the rod at
+    angle phi.
+    """
     mechanism = linkage(study("jamming"))
     a, c = (complex(*mechanism.joint(j).at) for j in "AC")
     phi = float(np.angle(a - c))
@@ -196,7 +221,7 @@ def jamming() -> Jamming:
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     return (
         _toggle(toggle()),
         _change(change_point()),
@@ -206,7 +231,7 @@ def entries() -> tuple[Entry, ...]:
 
 
 def _within(error: float) -> str:
-    """The power of ten above an error, which round-off does not change."""
+    """Return the power of ten above an error, which does not change with round-off."""
     return ten_to(int(np.ceil(np.log10(max(error, 1e-15)))))
 
 

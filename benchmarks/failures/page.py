@@ -14,12 +14,12 @@ PICTURES = ROOT / "docs" / "images" / "failures"
 
 
 def page(entries: Iterable[Entry]) -> str:
-    """The text of all entries."""
+    """Return the text of all entries."""
     return "\n".join(entry.text for entry in entries).rstrip()
 
 
 def draw(entry: Entry, directory: Path = PICTURES) -> Path:
-    """The picture of an entry; the same bytes on every run."""
+    """Draw the picture of an entry, the same bytes on every run; return its path."""
     path = directory / f"{entry.name}.svg"
     with panels(1, entry.panels, height=2.6) as (figure, axes):
         entry.draw(figure, axes)

@@ -1,4 +1,4 @@
-"""Extreme shapes: discs and needles, tiny fillets, foils; and sizes and units of all kinds."""
+"""Extreme shapes: discs and needles, tiny fillets, thin tubes; and different sizes and units."""
 
 from __future__ import annotations
 
@@ -26,7 +26,12 @@ SCALES = tuple(10.0**k for k in (-6, -3, 0, 3, 6))
 
 @dataclass(frozen=True)
 class Shape:
-    """One pin of a study: ratio: what is extreme; naive, truth: MPa; found: what pinstress says."""
+    """One pin of a study.
+
+    ratio: the extreme ratio of its dimensions.
+    naive, truth: MPa.
+    found: pinstress's result.
+    """
 
     ratio: float
     naive: float
@@ -35,13 +40,14 @@ class Shape:
 
     @property
     def held(self) -> bool:
-        """Whether the estimated error holds the truth."""
+        """Whether the estimated error contains the true value."""
         return contains(self.found, self.truth)
 
 
 def beam(pin: Pin, force: float) -> float:
-    """M c / I (Pa) in the middle of a pin in double shear, its bands a quarter, a half and a
-    quarter of its length: M = F L / 8.
+    """Return M c / I, Pa, in the middle of a pin in double shear: M = F L / 8.
+
+    Its bands are a quarter, a half and a quarter of its length.
     """
     s = pin.segments[0]
     return 4.0 * force * pin.length * s.diameter / (np.pi * (s.diameter**4 - s.bore**4))
@@ -49,8 +55,10 @@ def beam(pin: Pin, force: float) -> float:
 
 @cache
 def slender() -> tuple[Shape, ...]:
-    """Length over diameter 0.1 to 100; the truth is the larger of the surface and the section in
-    the middle, where beam theory has it.
+    """Return pins with a length over diameter of 0.1 to 100.
+
+    The true value is the larger of the surface and the section in the middle, for which beam theory
+    is exact.
     """
     out = []
     for t in plan("slender").tasks:
@@ -64,7 +72,9 @@ def slender() -> tuple[Shape, ...]:
 
 @cache
 def fillets() -> tuple[Shape, ...]:
-    """Fillet over diameter 0.001 to 0.1; naive: one mesh of an eighth of the diameter."""
+    """Return pins with a fillet over diameter of 0.001 to 0.1; the naive value is from one mesh of
+    an eighth of the diameter.
+    """
     name = "tiny_fillet"
     return tuple(
         Shape(
@@ -79,7 +89,7 @@ def fillets() -> tuple[Shape, ...]:
 
 @cache
 def tubes() -> tuple[Shape, ...]:
-    """Bores of 0 to 99 %; naive: the beam."""
+    """Return pins with bores of 0 to 99 % of the diameter; the naive value is that of the beam."""
     name = "thin_tube"
     out = []
     for t in plan(name).tasks:
@@ -92,8 +102,12 @@ def tubes() -> tuple[Shape, ...]:
 
 @dataclass(frozen=True)
 class Sizes:
-    """scales (K,) of all lengths; stress (K,) Pa under forces that go with their squares; taken
-    (K,): part of the nodes that np.isclose takes for the loaded surface, right: as it should be.
+    """The results for one pin at several sizes.
+
+    scales: (K,) of all lengths.
+    stress: (K,) under forces that are scaled with the squares of lengths, Pa.
+    taken: (K,) fraction of the nodes that np.isclose selects as the loaded surface. right: the
+    correct one.
     apart: relative difference of the study's two pins.
     """
 
@@ -106,7 +120,9 @@ class Sizes:
 
 @cache
 def units() -> Sizes:
-    """One pin in two systems of units; and pins of 20 nm to 20 km, alike but for their size."""
+    """Return the results for one pin in two systems of units, and for similar pins from 20 nm to 20
+    km.
+    """
     name = "units"
     pin, loads = revolved(name, "metres"), task(name, "metres").loads[0]
     stress, taken, right = [], [], 0.0
@@ -127,7 +143,7 @@ def units() -> Sizes:
 
 
 def entries() -> tuple[Entry, ...]:
-    """Of this family."""
+    """Return the entries of this family."""
     return (
         _entry(
             "slender", "Discs and needles", slender(),

@@ -1,5 +1,6 @@
-"""What the cells of contact and the meshes leave of error in surface, section and beneath contact,
-on pins drawn at random: against cells half as large and meshes half as coarse.
+"""The errors by contact cells and meshes in surface, section and beneath contact.
+
+Pins drawn at random are compared with cells half as large and meshes half as coarse.
 """
 
 from __future__ import annotations
@@ -35,10 +36,11 @@ OFTEN = 0.95
 
 @dataclass(frozen=True)
 class CellError:
-    """Of a pin, by place, (3,): the error of the usual cells as estimated from cells twice as
-    large, and by how much it is off on them, relative; mesh: how much the second mesh changes the
-    surface, and by how much it is off on that one; flexibilities: by how much sections are off for
-    their meshes.
+    """The errors of a pin by place, (3,), relative.
+
+    estimate: of the usual cells, from cells twice as large. off: the true one.
+    mesh: the change of the surface by the second mesh, and the true error on this mesh.
+    flexibilities: the error of sections by the meshes of flexibilities.
     """
 
     name: str
@@ -49,7 +51,7 @@ class CellError:
 
 
 def cells() -> str:
-    """Two tables."""
+    """Return the two tables."""
     found = list(cell_errors(COUNT, SEED))
     rows = [(name, *_row(found, k)) for k, name in enumerate(PLACES)]
     head = ("place", "pins", "off, median [%]", "95 % [%]", "largest [%]", "estimated covers")
@@ -80,14 +82,14 @@ def _spread(off: Floats) -> tuple[str, ...]:
 
 
 def cell_errors(count: int, seed: int) -> Iterator[CellError]:
-    """Of pins at one instant, every fourth also on a third mesh."""
+    """Yield the errors of pins at one instant, every fourth also on a third mesh."""
     trials = [t for t in pin_trials(2 * count, seed) if t.given.cases[0].times is None][:count]
     for k, trial in enumerate(trials):
         yield cell_error(trial, k % 4 == 0)
 
 
 def cell_error(trial: PinTrial, meshes: bool) -> CellError:
-    """meshes: whether those are tried, too."""
+    """Return the errors of a pin. meshes: whether those of meshes are included."""
     model = _model(trial, Resolution())
     contact = model.solve(trial.given.cases[0])
     (compared,) = compare(model, [contact], Requirement(), vary=nowhere)
@@ -110,7 +112,9 @@ def _model(trial: PinTrial, size: Resolution) -> ContactModel:
 
 
 def _stress(model: ContactModel, contact: JointContact, meshes: int) -> tuple[list[float], Floats]:
-    """The surface on each mesh; surface, section and what lies beneath on the last, Pa."""
+    """Return the surface's maximum on each mesh, and surface, section and stress beneath contact on
+    the last, Pa.
+    """
     requirement = Requirement(model="harmonic", meshes=meshes, tolerance=1e-9)
     (found,) = solve_pin(model.pin, model.material, (), (contact.loads,), requirement)
     assert isinstance(found.answer, HarmonicField)

@@ -1,6 +1,7 @@
-"""Peak of pressure at the rounded edges of lugs, estimated from the pressure beside it: of shrink
-fits against finite elements of lugs whose edges are rounded, of clevises against rings of a few
-thousandths of the radius.
+"""The peak of pressure at the rounded edges of lugs, estimated from the pressure next to it.
+
+Shrink fits are compared with finite elements of lugs whose edges are rounded, clevises with rings
+of a few thousandths of the radius.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 
 ALUMINIUM = Material("aluminium", 70e9, 0.33)
-# Shrink fits: radius of the edges and length, of the diameter. Their elements, of the radius.
+# Shrink fits: radius of the edges and length over the diameter; elements over the radius.
 FITS = tuple(product((STEEL, ALUMINIUM), (0.01, 0.02, 0.05), (0.5, 1.0, 2.0)))
 INTERFERENCE, ELEMENT = 1e-3, 1.0 / 600.0
 ALIKE = (
     Resolution(8, 6, 0),
     Resolution(4, 6, 0),
     Resolution(8, 6, 0, beside=1.0 / 300.0),
-)  # round the axis
+)  # axisymmetric
 RESOLVED = Resolution(8, 24, 8, beside=1.0 / 200.0)
-# Inner, outer lugs and gap, mm; radius of the edges, of the diameter; clearance, mm; lugs of; load,
-# of the usual one.
+# Inner lug, outer lugs and gap, mm; radius of the edges over the diameter; clearance, mm; material
+# of the lugs; load over the usual one.
 TRIED: tuple[tuple[tuple[float, float, float], float, float, Material, float], ...] = (
     ((20, 10, 1), 0.01, 0.0, STEEL, 1.0),
     ((20, 10, 1), 0.05, 0.0, STEEL, 1.0),
@@ -47,7 +48,7 @@ BANDS = ("outer", 0), ("inner", 1)
 
 
 def edge_peak() -> str:
-    """Two tables."""
+    """Return the two tables."""
     return f"{_fits()}\n\n{_clevises()}"
 
 
@@ -66,12 +67,12 @@ def _fits() -> str:
 
 
 def shrink_fit(radius: float, length: float) -> ShrinkFit:
-    """Of a pin, radius of the edges and length of the lug in diameters."""
+    """Return the shrink fit of a pin; radius of the edges and length of the lug in diameters."""
     return ShrinkFit(D, length * D, radius * D, EYE, INTERFERENCE * D, D)
 
 
 def shrunk(fit: ShrinkFit, material: Material, cells: Resolution) -> JointContact:
-    """The same by rings; material: of the lug."""
+    """Return the same fit solved by rings. material: of the lug."""
     over = Segment(fit.over, fit.diameter)
     pin = Pin("P", (over, Segment(fit.length, fit.diameter, connection="M"), over))
     lug = Lug("M", fit.outer, material, -fit.interference, edge_radius=fit.radius)
@@ -81,7 +82,7 @@ def shrunk(fit: ShrinkFit, material: Material, cells: Resolution) -> JointContac
 
 
 def _clevises() -> str:
-    """A row for each kind of lug of a clevis."""
+    """Return the table with a row for each kind of lug of a clevis."""
     rows = []
     for (inner, outer, gap), radius, clearance, lugs, part in TRIED:
         lug = Lug("all", EYE, lugs, clearance / 1e3, edge_radius=radius * D)
@@ -112,7 +113,7 @@ def _part(part: float) -> PinLoads:
 
 
 def _estimated(contact: JointContact, band: int) -> float:
-    """The largest peak at either edge of a band, Pa."""
+    """Return the largest estimated peak at either edge of a band, Pa."""
     edges = contact_edges(contact, STEEL)
     peaks = [e.max_pressure for e in edges if e.band == contact.lugs[band].connection]
     return max(x for x in peaks if x is not None)

@@ -1,4 +1,6 @@
-"""The beam on foundations compared with contact: its error on pins drawn at random, and times."""
+"""The beam on foundations compared with contact: its errors on pins drawn at random, and
+its times.
+"""
 
 from __future__ import annotations
 
@@ -36,21 +38,25 @@ from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.lug import Lug
 from geometry import Band, Pin, Segment
 
-PINS, SEED = 40, 3  # 1, 2 and 5 served to find the constants
+PINS, SEED = 40, 3  # the constants were fitted on the seeds 1, 2 and 5
 FINE = Resolution(rings=8, sectors=48, highest=16)
 ENDS = 0.04, 0.15  # of a lug's length
 CLEARANCES = 0.001, 0.003  # of the diameter
-PRESSURE = 1e8  # Pa, the mean over the most loaded lug at which clearances count
+PRESSURE = 1e8  # Pa, mean pressure on the most loaded lug under which clearances are compared
 INSTANTS = 10_000
-UNSEEN = 22  # seed; 21 and 23 served to find what clearance and rounded edges add to the error
+UNSEEN = 22  # seed; the error by clearance and rounded edges was fitted on the seeds 21 and 23
 PLAYS = 0.0, 1.0, 10.0  # clearance in p / E diameters, p the mean pressure on the most loaded band
 PLAY = 0.001  # of the diameter
 
 
 @dataclass(frozen=True)
 class Compared:
-    """Of one pin: errors of the largest moment and at mid-span over the largest of contact, of the
-    line load at the lugs' ends over the lug's mean, on the last parts (ENDS); bound of the first.
+    """The errors of one pin.
+
+    largest, middle: of the moment, at its largest and at mid-span, over the largest by contact.
+    last, last_two: of the line load at the lugs' ends over the lug's mean, on the last parts
+    (ENDS).
+    bound: the estimated bound of the first.
     """
 
     lugs: int
@@ -63,7 +69,7 @@ class Compared:
 
 
 def foundation() -> str:
-    """Five tables."""
+    """Return the five tables."""
     trials = joint_trials(PINS, SEED)
     contacts = [_contact(trial) for trial in trials]
     return "\n\n".join(
@@ -78,7 +84,7 @@ def foundation() -> str:
 
 
 def contact_places(trial: JointTrial, model: ContactModel | None = None) -> AtPlaces:
-    """Stress by contact, of one instant, on the first mesh."""
+    """Return the stresses by contact at one instant, on the first mesh."""
     joint = model or ContactModel(trial.pin, trial.material, trial.lugs)
     loads = joint.solve(trial.loads).loads
     singular = singularities_of(joint.pin, joint.material, (), (loads,))
@@ -90,7 +96,10 @@ def contact_places(trial: JointTrial, model: ContactModel | None = None) -> AtPl
 
 
 def played(trial: JointTrial, play: float) -> JointTrial:
-    """With so much clearance in p / E diameters: of PLAY diameters, under loads that make it so."""
+    """Return the joint with a clearance of `play` times p / E diameters.
+
+    The clearance is PLAY diameters, and the loads are such that it has this ratio.
+    """
     if not play:
         return trial
     bands = [trial.pin.band(lug.connection) for lug in trial.lugs]
@@ -104,13 +113,15 @@ def played(trial: JointTrial, play: float) -> JointTrial:
 
 
 def bounds_of(trial: JointTrial) -> StressBounds:
-    """By the beam on foundations."""
+    """Return the bounds of the stress by the beam on foundations."""
     model = FoundationModel(trial.pin, trial.material, trial.lugs)
     return stress_bounds(FoundationStress.of(model), model.solve(trial.loads))
 
 
 def _stresses() -> str:
-    """The row by contact, over the beam's, and within its bounds with what lies beneath."""
+    """Return the table of the row's stress by contact: over the beam's, and whether it and the
+    stress beneath contact are within the beam's bounds.
+    """
     trials = joint_trials(PINS, UNSEEN)
     joints = [ContactModel(t.pin, t.material, t.lugs) for t in trials]
     rows = [_stress_row(trials, joints, play) for play in PLAYS]
@@ -141,12 +152,12 @@ def _stress_row(
 
 
 def two_constants(segment: Segment, material: Material, lug: Lug) -> float:
-    """The stiffness that clevises with solid pins gave, N/m^2."""
+    """Return the stiffness fitted to clevises with solid pins, N/m^2."""
     return 1.0 / (0.196 / material.youngs_modulus + 0.987 / lug.material.youngs_modulus)
 
 
 def largest_moment(moment: Callable[[Floats], Floats], pin: Pin) -> float:
-    """Of the first instant along x, N m."""
+    """Return the largest moment along the pin at the first instant, under loads along x, N m."""
     return float(np.abs(moment(np.linspace(0.0, pin.length, 401))[0, :, 0]).max())
 
 
@@ -183,7 +194,9 @@ def _compared(trial: JointTrial, contact: JointContact, stiffness: Stiffness) ->
 def _end_loads(
     ours: Callable[[Floats], Floats], theirs: Callable[[Floats], Floats], band: Band, force: float
 ) -> Floats:
-    """By how much the loads along x of both ends of a lug differ, over their mean, (parts, 2)."""
+    """Return the differences of the loads along x on both ends of a lug, over their mean, (parts,
+    2).
+    """
     out = []
     for part in ENDS:
         z = np.array([band.z0, band.z0 + part * band.length, band.z1 - part * band.length, band.z1])
@@ -240,7 +253,7 @@ def _row(group: list[Compared]) -> tuple[str, ...]:
 
 
 def clevis(inner: float, outer: float, gap: float) -> tuple[Pin, list[Lug]]:
-    """Of the published references, mm."""
+    """Return a clevis of the published references; lengths in mm."""
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
         Segment(t / 1e3, D, connection=name)
@@ -274,7 +287,7 @@ def _clevises() -> str:
 
 
 def _clearances(trials: list[JointTrial], contacts: list[JointContact]) -> str:
-    """How much more the largest moment is with clearance, by contact."""
+    """Return the table of the rise of the largest moment with clearance, by contact."""
     rows = []
     for clearance in CLEARANCES:
         rises = 100.0 * np.array(

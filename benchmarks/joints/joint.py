@@ -1,5 +1,5 @@
-"""Contact of pins with their lugs: against three-dimensional contact, how far it converges with
-cells, and what it takes.
+"""Contact of pins with their lugs: compared with contact in three dimensions, its convergence with
+cells, and its times.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ NAMES = "L", "M", "R"
 SHARE = np.array([-0.5, 1.0, -0.5])
 # Inner and outer lug, gap, diametral clearance, mm; bending moment over F/2 (t_o/2 + g + t_i/4) and
 # von Mises stress of the tension fibre at mid-span, MPa, by frictionless contact in three
-# dimensions with two programs (eyes of 50 with a shank of 50 that is clamped 50 away).
+# dimensions with two programs (eyes of 50 mm with a shank 50 mm wide that is clamped 50 mm away).
 TRUTH = (
     (20, 10, 1, 0.0, 0.8418, 306.3),
     (20, 10, 1, 0.02, 0.8433, 303.8),
@@ -51,18 +51,20 @@ TRUTH = (
 )
 INSTANTS = 201
 COARSE, USUAL, FINE = Resolution(4, 24, 8), Resolution(), Resolution(12, 48, 16)
-RADII = (0.0, 0.01, 0.025, 0.05)  # of the edges, of the diameter
+RADII = (0.0, 0.01, 0.025, 0.05)  # of the lugs' edges, over the diameter
 
 
 def joint() -> str:
-    """Three tables."""
+    """Return the three tables."""
     return f"{_accuracy()}\n\n{_convergence()}\n\n{_times()}"
 
 
 def model(
     inner: float, outer: float, gap: float, of_all: Lug, cells: Resolution = USUAL
 ) -> ContactModel:
-    """A clevis, mm, whose lugs are as `of_all` but for the tilt of the outer ones."""
+    """Return a clevis, lengths in mm, whose lugs are `of_all` except for the tilt of the outer
+    ones.
+    """
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
         Segment(t / 1e3, D, connection=name)
@@ -76,19 +78,19 @@ def model(
 
 
 def shank_tilt(thick: float) -> float:
-    """The stiffness, N m/rad, with which the shank of an eye bends. thick: m."""
+    """Return the stiffness of the shank of an eye in bending, N m/rad. thick: m."""
     outline = LugOutline("round", D, EYE, EYE, HELD, EYE / 2.0)
     return E * thick**3 / (12.0 * outline.bending)
 
 
 def pull(angle: Floats) -> PinLoads:
-    """One instant for each angle (rad) of the load."""
+    """Return loads with one instant for each angle, rad, of the force."""
     along = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
     return PinLoads("pull", NAMES, FORCE * SHARE[None, :, None] * along[:, None, :])
 
 
 def _growing(count: int) -> PinLoads:
-    """Instants of which no two have the same contact, which clearance makes depend on the size of
+    """Return instants that all differ in contact: with clearance, contact depends on the size of
     the load.
     """
     loads = pull(np.linspace(0.0, np.pi, count))
@@ -117,7 +119,9 @@ def _accuracy() -> str:
 
 
 def at_mid_span(found: JointContact, inner: float, outer: float, gap: float) -> tuple[float, float]:
-    """Bending moment over the nominal one, and von Mises stress of the tension fibre, MPa."""
+    """Return the bending moment over the nominal one, and the von Mises stress of the tension
+    fibre, MPa.
+    """
     middle = (2.0 + outer + gap + inner / 2.0) / 1e3
     bending = abs(found.bending_moment(np.array([middle]))[0, 0, 0])
     nominal = FORCE / 2.0 * (outer / 2.0 + gap + inner / 4.0) / 1e3
@@ -132,7 +136,7 @@ def at_mid_span(found: JointContact, inner: float, outer: float, gap: float) -> 
 
 
 def _convergence() -> str:
-    """Of the first clevis and the longest, by the radius of the lugs' edges."""
+    """Return the table of the first clevis and the longest, by the radius of the lugs' edges."""
     rows = []
     for case, radius, cells in product((TRUTH[2], TRUTH[7]), RADII, (COARSE, USUAL, FINE)):
         inner, outer, gap, clearance = case[:4]
@@ -149,7 +153,9 @@ def _convergence() -> str:
 
 
 def _times() -> str:
-    """Of the first clevis; seconds, the median of three, each of a new model."""
+    """Return the table of times, s, of the first clevis, medians of three runs with a new model
+    each.
+    """
     head = ("cells of each band", "flexibilities [s]", "one instant [s]", "each further [ms]")
     rows = [_times_on(cells) for cells in (USUAL, FINE)]
     return table((*head, f"{INSTANTS} instants [s]", "steps of the active set"), rows)
@@ -167,7 +173,9 @@ def _times_on(cells: Resolution) -> tuple[str, ...]:
 
 
 def _timed(work: Callable[[S], T], with_this: Callable[[], S]) -> tuple[float, T]:
-    """Of some work with what is made anew before, which does not count."""
+    """Return the median time of `work`, s, and its result. with_this: makes its argument, which is
+    not timed.
+    """
     spent = []
     for _ in range(3):
         made = with_this()

@@ -1,6 +1,6 @@
 """Pins in their lugs, drawn at random, by our harmonic contact and by CalculiX in 3D.
 
-Times are of processors, since other work stretches wall times; CalculiX has one thread.
+Times are processor times, since other work increases wall times; CalculiX has one thread.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from geometry import Pin, Segment
 STEEL = Material("steel", 210e9, 0.3)
 EYES = (STEEL, Material("aluminium", 70e9, 0.33), Material("titanium", 114e9, 0.33))
 COUNT, SEED = 6, 20
-DISTANCE = 0.1  # of the smallest diameter, from lugs' edges and shoulders, that is left out
+DISTANCE = 0.1  # of the smallest diameter; nearer to lugs' edges and shoulders stress is left out
 EVERY = Fineness(sectors=24, layers=3, eye=2, along=8.0)
-WHOLE = Fineness(rings=6, sectors=16, eye=2)  # where no plane of symmetry halves the unknowns
-REFINED = 0  # the joint of which CalculiX has several meshes and stiffnesses
+WHOLE = Fineness(rings=6, sectors=16, eye=2)  # without a plane of symmetry to halve the unknowns
+REFINED = 0  # the joint that CalculiX solves on several meshes and with several stiffnesses
 MESHES = (
     Fineness(rings=6, sectors=16, eye=2),
     EVERY,
@@ -43,7 +43,7 @@ MESHES = (
     Fineness(rings=6, sectors=16, eye=2, scale=1.0),
 )
 CELLS = ROUGH, Resolution(6, 24, 8), Resolution(), Resolution(10, 48, 16)
-USUAL = 2  # of these
+USUAL = 2  # index in CELLS
 INSTANTS = 201
 SHAPES = "plain", "stepped", "hollow"
 
@@ -58,12 +58,12 @@ class Joint:
 
     @property
     def oblique(self) -> bool:
-        """Whether its forces lie in no plane."""
+        """Whether its forces are not in one plane."""
         return bool(self.loads.forces[..., 1].any())
 
     @property
     def described(self) -> str:
-        """Lugs' thickness over the diameter, and what else is not plain."""
+        """The thickness of the lugs over the diameter, and the shape of the pin."""
         d = self.pin.smallest_diameter
         bands = [self.pin.band(lug.connection) for lug in self.lugs]
         thick = " + ".join(f"{band.length / d:.2f}" for band in bands)
@@ -78,8 +78,12 @@ class Joint:
 
 @dataclass(frozen=True)
 class Ours:
-    """Our answer: largest bending moment, N m; von Mises stress, Pa, at the governing point (3,) m;
-    seconds of processor time for contact and for stress; pressures and unknowns of the mesh.
+    """Our result.
+
+    moment: largest bending moment, N m.
+    stress: von Mises stress, Pa, at the governing point (3,), m.
+    contact, stresses: processor times, s.
+    pressures, unknowns: numbers of contact pressures and of unknowns of the mesh.
     """
 
     moment: float
@@ -92,16 +96,18 @@ class Ours:
 
 
 def joint_ccx() -> str:
-    """Five tables."""
+    """Return the five tables."""
     if not installed():
         return f"CalculiX is not installed (no {CALCULIX_COMMAND}); {INSTALL_HINT}"
     joints = drawn(COUNT, SEED)
-    parts = [_described(joints), _beside(joints), _meshes(joints[REFINED])]
+    parts = [_described(joints), _comparison(joints), _meshes(joints[REFINED])]
     return "\n\n".join([*parts, _ours(joints[REFINED]), _motion(joints[REFINED])])
 
 
 def drawn(count: int, seed: int) -> list[Joint]:
-    """Of two lugs or three; plain, stepped or hollow; the last with forces in no plane."""
+    """Return joints with two or three lugs and plain, stepped or hollow pins; the forces on the
+    last are not in one plane.
+    """
     rng = np.random.default_rng(seed)
     return [_drawn(rng, k, oblique=k == count - 1) for k in range(count)]
 
@@ -125,7 +131,9 @@ def _drawn(rng: np.random.Generator, k: int, oblique: bool) -> Joint:
 
 
 def _lug(rng: np.random.Generator, pin: Pin, name: str, guided: bool) -> Lug:
-    """Its tilt as of a shank as wide as the eye, clamped at its diameter."""
+    """Return a lug whose tilt stiffness is that of a shank as wide as the eye, clamped one width
+    away.
+    """
     band, material = pin.band(name), EYES[int(rng.integers(len(EYES)))]
     d = 2.0 * band.radius
     outer = d * float(rng.uniform(2.0, 2.6))
@@ -157,7 +165,7 @@ def _described(joints: list[Joint]) -> str:
     return table(("joint", "d [mm]", "lugs, pin", "clearances / d", "lugs of", "in a plane"), rows)
 
 
-def _beside(joints: list[Joint]) -> str:
+def _comparison(joints: list[Joint]) -> str:
     rows = [
         (k, *_row(joint, ours(joint), _theirs(joint, WHOLE if joint.oblique else EVERY)))
         for k, joint in enumerate(joints, 1)
@@ -181,10 +189,10 @@ def _row(
     return (
         f"{mine.moment:.4g}",
         f"{moment:.4g}",
-        _off(mine.moment, moment),
+        _deviation(mine.moment, moment),
         f"{mine.stress / 1e6:.1f}",
         f"{there / 1e6:.1f}",
-        _off(mine.stress, there),
+        _deviation(mine.stress, there),
         f"{found.largest(DISTANCE * joint.pin.smallest_diameter) / 1e6:.1f}",
         unknowns,
         found.unknowns,
@@ -194,12 +202,12 @@ def _row(
     )
 
 
-def _off(one: float, other: float) -> str:
+def _deviation(one: float, other: float) -> str:
     return f"{100.0 * (one / other - 1.0):+.1f}"
 
 
 def _theirs(joint: Joint, fineness: Fineness) -> tuple[JointOpinion, float] | CalculixError:
-    """Their answer and its processor time, s; or why there is none."""
+    """Return CalculiX's result and its processor time, s, or the error."""
     before = os.times()
     try:
         found = joint_opinion(joint.pin, STEEL, joint.lugs, joint.loads, fineness)
@@ -211,7 +219,7 @@ def _theirs(joint: Joint, fineness: Fineness) -> tuple[JointOpinion, float] | Ca
 
 
 def ours(joint: Joint, cells: Resolution = CELLS[USUAL]) -> Ours:
-    """Contact, then stress to 2 %, of which the largest away from edges."""
+    """Return our result: contact, then stress to 2 %, at its largest away from edges."""
     start = time.process_time()
     model = ContactModel(joint.pin, STEEL, joint.lugs, cells)
     found = model.solve(joint.loads)
@@ -236,7 +244,7 @@ def ours(joint: Joint, cells: Resolution = CELLS[USUAL]) -> Ours:
 
 
 def largest_moment(found: JointOpinion, pin: Pin) -> float:
-    """Along the pin, N m."""
+    """Return the largest moment along the pin, N m."""
     return float(np.linalg.norm(found.bending_moment(_along(pin)), axis=1).max())
 
 
@@ -245,7 +253,9 @@ def _along(pin: Pin) -> Floats:
 
 
 def _meshes(joint: Joint) -> str:
-    """CalculiX on several meshes, with another stiffness of the contact, and under full loads."""
+    """Return the table of CalculiX on several meshes, with other stiffnesses of the contact, and
+    under full loads.
+    """
     point = ours(joint).point[None]
     rows: list[tuple[object, ...]] = []
     for mesh in MESHES:
@@ -264,8 +274,9 @@ def _meshes(joint: Joint) -> str:
 
 
 def _motion(joint: Joint) -> str:
-    """As many instants: forces that turn once and grow to twice theirs. Beside it so many times
-    what CalculiX takes for one of them.
+    """Return the table of a motion: forces that turn once and grow to twice their size.
+
+    CalculiX's time is that of one instant times the number of instants.
     """
     turn = np.linspace(0.0, 2.0 * np.pi, INSTANTS)
     size = (1.0 + turn / turn[-1])[:, None] * np.stack([np.cos(turn), np.sin(turn)], axis=1)

@@ -1,4 +1,6 @@
-"""Derivatives of pins in contact: all that may change, and differences of whole solutions."""
+"""Derivatives of pins in contact by all parameters, compared with differences of whole
+solutions.
+"""
 
 from __future__ import annotations
 
@@ -41,14 +43,16 @@ from geometry.shape.dimensions import Dimension, dimensions
 from pinbase.arrays import Floats
 
 JOINTS = 4
-CHECKED = 2  # parameters of each, those that matter most, that are compared with differences
-ROUGH = Resolution(4, 24, 8)  # of whole solutions for differences
-ALL = 1e-15  # what a pattern of pressures must add
-STEP = 1e-4  # of a parameter
+CHECKED = 2  # the most important parameters of each joint, which are compared with differences
+ROUGH = Resolution(4, 24, 8)  # of the whole solutions from which differences are taken
+ALL = 1e-15  # least contribution of a pattern of pressures, so that all are included
+STEP = 1e-4  # of the differences, over the scale of a parameter
 
 
 def price() -> str:
-    """Of pins without contact, and of random ones in contact with their lugs."""
+    """Return the tables of the cost of derivatives, for pins without contact and for random pins in
+    contact with their lugs.
+    """
     rows = [_row(trial) for trial in joint_trials(JOINTS, seed=22)]
     head = (
         "joint",
@@ -103,7 +107,7 @@ def _row(trial: JointTrial) -> tuple[Any, ...]:
 
 
 def solved_in_lugs(made: Solution, material: Material) -> tuple[SolvedCase, ContactModel, PinLoads]:
-    """What is differentiated of a solution."""
+    """Return the parts of a solution that are differentiated."""
     held, answer = made.held, made.answer
     assert isinstance(answer, HarmonicField)
     assert made.rings is not None
@@ -115,7 +119,9 @@ def solved_in_lugs(made: Solution, material: Material) -> tuple[SolvedCase, Cont
 
 
 def parameters(pin: Pin, material: Material, lugs: Sequence[Lug]) -> Iterator[JointParameter]:
-    """All lengths and moduli of a joint, each by itself; names distinguish materials."""
+    """Yield all lengths and moduli of a joint, each by itself; materials are distinguished by their
+    names.
+    """
     joint = pin, material, tuple(lugs)
     for d in dimensions(pin):
         yield JointParameter(d.key, d.value, d.value, partial(_of_pin, joint, d))
@@ -169,7 +175,9 @@ def _made_of(joint: Joint, old: Material, key: str, value: float) -> Joint:
 
 @dataclass(frozen=True)
 class WholeJoint:
-    """A joint, its maximum on the meshes of a solution as they are moved: of a place."""
+    """A joint and its maximum at one place, on the meshes of its solution, which move with a
+    parameter.
+    """
 
     solved: SolvedCase
     model: ContactModel
@@ -177,7 +185,9 @@ class WholeJoint:
     place: Place = "surface"
 
     def maximum(self, parameter: JointParameter, value: float) -> float:
-        """With another value of a parameter, all of it found anew."""
+        """Return the maximum for another value of a parameter, with contact and stress solved
+        again.
+        """
         model, links = self.model, self.links
         pin, material, lugs = parameter.changed(value)
         other = model.reshaped(pin, material, lugs)
@@ -218,7 +228,7 @@ class WholeJoint:
         return moved_maximum(self.solved, other.pin, shift, material, loads)
 
     def _pressed(self, model: ContactModel) -> ContactState:
-        """With the cells where they are."""
+        """Return the contact of a changed model, with the same active cells."""
         (before,) = self.model.pressed(self.links)
         acting = model.acting(self.links).turned([before.angle])
         x, y = acting.couples[0].tolist()
@@ -226,7 +236,7 @@ class WholeJoint:
         return contact.solve(forces, (x, y), before.active, moments).turned(before.angle)
 
     def derivative(self, parameter: JointParameter) -> float:
-        """By differences."""
+        """Return the derivative by differences."""
         return richardson(
             lambda x: self.maximum(parameter, parameter.value + x), STEP * parameter.scale
         )
@@ -240,7 +250,7 @@ def whole_joint(
     cells: Resolution,
     place: Place = "surface",
 ) -> WholeJoint:
-    """Solved on its first mesh, with all harmonics of contact."""
+    """Return a joint solved on its first mesh, with all harmonics of contact."""
     model = ContactModel(pin, material, lugs, cells)
     found = model.pressed(links)
     waves = model.waves(found)
@@ -261,7 +271,7 @@ def _knots(eye: Pin, lug: Lug) -> tuple[Floats, Floats]:
 def _moved(
     mesh: MeridianMesh, before: Pin, after: Pin, reaches: Sequence[Reach] = ()
 ) -> MeridianMesh:
-    """A mesh with its outline where that of another pin is."""
+    """Return a mesh whose outline is moved to that of another pin."""
     nodes = OutlineNodes(mesh, before, reaches)
     space = Section(mesh)
     shift = nodes.at(after) - space.nodes[nodes.rows]

@@ -1,7 +1,7 @@
-"""Limit and ultimate loads of lugs over those of twenty bars that broke.
+"""Limit and ultimate loads of lugs, compared with those of twenty bars that broke.
 
 R. L. Moore, NACA TN 1503 and TN 1502 (1948): a steel pin of 0.5 in in bars 2 in wide and 0.25 in
-thick, with square ends, of which the tables give the tensile test and the bearing ultimate.
+thick with square ends; the tables give the tensile test and the bearing ultimate.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ of displacement {small:.0f}."""
 
 @dataclass(frozen=True)
 class BrokenBar:
-    """A test: strengths and the bearing ultimate in ksi; e/D; the curve of the pulled lug."""
+    """A test: strengths and bearing ultimate in ksi; e/D (`ratio`); the curve of the pulled lug."""
 
     report: str
     name: str
@@ -57,13 +57,17 @@ class BrokenBar:
     curve: PullCurve
 
     def by_strain(self, multiple: float | None) -> float:
-        """Predicted over measured, broken at a multiple of ln(1 + A)."""
+        """Return predicted over measured load, with failure at a multiple of ln(1 + A); None: no
+        failure strain.
+        """
         limit = None if multiple is None else multiple * math.log(1.0 + self.elongation)
         return self.curve.largest(limit)[0] / (BORE * KSI) / self.measured
 
 
 def lugs() -> str:
-    """The table, with mean and standard deviation of each report, and what was published."""
+    """Return the table, with mean and standard deviation of each report, and the
+    published results.
+    """
     limits = {ratio: lug_limit_load(_bar(ratio), KSI) for ratio in (1.5, 2.0)}
     bars = _bars()
     multiple = _fitted([b for b in bars if b.report == FITTED_ON])
@@ -105,7 +109,7 @@ def _bars() -> list[BrokenBar]:
 
 
 def _bar(ratio: float) -> LugOutline:
-    """The end of a bar, by e/D; farther from the bore it does not flow."""
+    """Return the end of a bar, by e/D; farther from the bore the bar does not yield."""
     return LugOutline("square", BORE, 0.0, WIDTH, WIDTH, ratio * BORE)
 
 
@@ -117,7 +121,7 @@ def _predictions(bar: BrokenBar, limit: LugLimitLoad, multiple: float) -> list[f
 
 
 def _fitted(bars: list[BrokenBar]) -> float:
-    """The multiple of ln(1 + A) of the least mean square."""
+    """Return the multiple of ln(1 + A) with the least mean square of the errors."""
 
     def error(multiple: float) -> float:
         return sum((b.by_strain(multiple) - 1.0) ** 2 for b in bars)
@@ -126,7 +130,9 @@ def _fitted(bars: list[BrokenBar]) -> float:
 
 
 def _published(bars: list[BrokenBar]) -> str:
-    """What another solver reached on these tests, and its collapse of a round head, beside ours."""
+    """Return the results of another solver for these tests and for the collapse of a round head,
+    with ours.
+    """
     ranges = []
     for report in dict.fromkeys(b.report for b in bars):
         errors = [

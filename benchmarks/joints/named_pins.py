@@ -1,4 +1,4 @@
-"""Pins of which other numbers are known, by surface, section and what lies beneath contact."""
+"""Pins for which other programs' results are known: surface, section and stress beneath contact."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from geometry import Pin, Segment
 BORE = 0.55 * D
 GROOVE = Groove(D, 0.06 * D, 0.15 * D, 0.075 * D, 0.05 * D)
 INTERFERENCE = 1e-3 * D
-CLAMPED = 1e5  # N along the axis
-Known = tuple[float, float] | None  # from, to, MPa
-Ours = tuple[float, float | None] | None  # with its error, Pa
+CLAMPED = 1e5  # N along the axis of the clamped shaft
+Known = tuple[float, float] | None  # lower and upper value, MPa
+Ours = tuple[float, float | None] | None  # value and error, Pa
 
 
 @dataclass(frozen=True)
 class NamedPin:
-    """What other programs find, MPa; by: which."""
+    """A pin with the results of other programs, MPa. by: the programs."""
 
     name: str
     solve: Callable[[], Maximum]
@@ -47,8 +47,10 @@ def clevis(
     bore: float = 0.0,
     interference: float = 0.0,
 ) -> PinProblem:
-    """A pull of 50 kN; thick: inner and outer lugs, mm, of which the outer ones tilt against shanks
-    of 40 mm; all of the same interference of the diameters, m.
+    """Return a clevis under a pull of 50 kN.
+
+    thick: inner and outer lugs, mm; the outer lugs tilt with shanks of 40 mm.
+    interference: of the diameters, m, the same for all lugs.
     """
     inner, outer = (1e-3 * t for t in thick)
     over = Segment(0.002, D, bore)
@@ -66,26 +68,29 @@ def clevis(
 
 
 def peak_of(given: PinProblem) -> Maximum:
-    """Of its only case."""
+    """Return the maximum in the only case of a pin."""
     (found,) = solve_in_lugs(given, Requirement())
     return found.peak
 
 
 def grooved() -> PinProblem:
-    """One in each gap, hence longer gaps."""
+    """Return a clevis with a groove in each gap, which makes the gaps longer."""
     return clevis(gap=GROOVE.segments)
 
 
 def even_pull(band: str, force: float) -> LoadsWithReactions:
-    """A force (N) along the axis as a uniform traction on a band, which others apply; a link's
-    fades towards the edges of its band.
+    """Return an axial force, N, as a uniform traction on a band, as in the reference.
+
+    The traction of a link fades towards the edges of its band instead.
     """
     acting = {UnitLoad(band, "force", 0): np.array([[force, 0.0]])}
     return LoadsWithReactions("tension", (band,), np.array([[[0.0, 0.0, force]]]), acting=acting)
 
 
 def clamp_beside_fillet() -> Maximum:
-    """Held on its surface up to 0.15 d before a fillet of 0.1 d, in tension."""
+    """Return the maximum of a shaft in tension, clamped on its surface up to 0.15 d before a fillet
+    of 0.1 d.
+    """
     segments = (
         Segment(D, D, name="held"),
         Segment(0.25 * D, D, name="shaft"),
@@ -109,13 +114,13 @@ NAMED = (
         "stub 16 / 8+8, touching", lambda: peak_of(clevis((16.0, 8.0), ())),
         PROTOTYPE, (243.2, 246.4),
     ),
-    # Beneath counts from 0.1 d on; theirs is all that lies below the pressed surface.
+    # Ours is farther than 0.1 d from pressure; theirs is anywhere below the pressed surface.
     NamedPin(
         "stub 10 / 5+5, gap 0.5", lambda: peak_of(clevis((10.0, 5.0), (Segment(5e-4, D),))),
         CONTACT, (215.0, 215.0), (184.0, 184.0), (281.0, 303.0),
     ),
-    # 8 rings, 32 sectors, 3 elements across an eye: the pressed tension fibre as it is, and without
-    # the stress of its pressure alone, 58 MPa; M 209.7 N m, of which section is 32 M / pi d^3.
+    # 8 rings, 32 sectors, 3 elements across an eye. The pressed tension fibre, with and without the
+    # stress of the pressure alone, 58 MPa; M is 209.7 N m, and the section 32 M / pi d^3.
     NamedPin(
         "clevis 20 / 10+10, gap 1, interference d/1000",
         lambda: peak_of(clevis(interference=INTERFERENCE)),
@@ -126,8 +131,8 @@ NAMED = (
         "clevis 20 / 10+10, grooves 0.06 d deep", lambda: peak_of(grooved()),
         CALCULIX, (698.2, 698.2), (454.2, 454.2),
     ),
-    # 6 rings, 32 sectors, 5 layers, thinner at the bore, where it is largest, in the gap. (600
-    # MPa with 16 and 4; even layers give 537 and 562: it is known to 3 %.)
+    # 6 rings, 32 sectors, 5 layers, thinner at the bore; the maximum is there, in the gap. (600 MPa
+    # with 16 sectors and 4 layers; even layers give 537 and 562, so it is accurate to 3 %.)
     NamedPin(
         "clevis 20 / 10+10, gap 1, bore 0.55 d",
         lambda: peak_of(clevis(bore=BORE)),
@@ -144,12 +149,12 @@ NAMED = (
 
 
 def row_of_named(named: NamedPin) -> tuple[str, ...]:
-    """Ours and the others', MPa."""
+    """Return the row of a pin with our results and the others', MPa."""
     peak = named.solve()
     found = peak.places
     assert found is not None
     error = found.surface.error_estimate
-    # Of a singular one the interval spans distances from its edge.
+    # The interval of a singular maximum is over excluded distances and is not shown.
     surface: Ours = found.surface.max_von_mises, None if peak.verdict == "singular" else error
     section: Ours = None
     below: Ours = None
@@ -180,6 +185,6 @@ def _theirs(known: Known) -> str:
 
 
 def named_pins() -> str:
-    """A table."""
+    """Return the table."""
     head = ("pin [mm]", "surface [MPa]", "others", "section [MPa]", "others", "beneath [MPa]")
     return table((*head, "others", "by"), [row_of_named(one) for one in NAMED])

@@ -1,5 +1,5 @@
-"""Stress of a pin in loose lugs under smaller and smaller loads, on narrower and narrower
-arcs: how far off the usual cells are, and what they say of it.
+"""The stress of a pin in loose lugs under ever smaller loads, on ever narrower arcs of contact: the
+error on the usual cells, and its estimate.
 """
 
 from __future__ import annotations
@@ -17,24 +17,25 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.contact.variations import ResolutionComparison, compare, nowhere
 from fea.support.lugs.lug import Lug
 
-CLEARANCE = 5e-5  # m, of the diameters
+CLEARANCE = 5e-5  # m, difference of the diameters
 EDGE_RADIUS = 1e-3  # m
-# The lugs that are loose, outer, inner and outer one, and the radius of all edges.
+# Which lugs (outer, inner, outer) are loose, and the radius of all edges.
 JOINTS = {
     "all": ((1, 1, 1), 0.0),
     "inner": ((0, 1, 0), 0.0),
     "outer": ((1, 0, 1), 0.0),
     "inner, round edges": ((0, 1, 0), EDGE_RADIUS),
 }
-LOADS = 1.0, 0.3, 0.1, 0.03, 0.01  # of the clevis's
+LOADS = 1.0, 0.3, 0.1, 0.03, 0.01  # over that of the clevis
 TRUTH = Resolution(8, 180, 90)
 TRIED = (ROUGH, *RESOLUTIONS)
 Place = Literal["surface", "beneath"]
 
 
 def narrow_arcs() -> str:
-    """Two tables of a clevis 20 / 10+10 mm, gap 1, on a pin of 20 mm with 0.05 mm of clearance:
-    the surface, and the stress beneath contact.
+    """Return the two tables, of the surface and of the stress beneath contact.
+
+    The clevis has lugs of 20 / 10+10 mm, a gap of 1 mm, a pin of 20 mm and a clearance of 0.05 mm.
     """
     rows: dict[Place, list[tuple[str, ...]]] = {"surface": [], "beneath": []}
     for name, (loose, edge) in JOINTS.items():

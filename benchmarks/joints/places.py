@@ -1,6 +1,8 @@
-"""Where stress is read, held against other numbers: the landing gear's pins on finer cells and
-meshes than rows take, clevises under three-dimensional contact, and pins drawn at random, whose
-surface another reader must not find more stressed than their row says.
+"""The places where stress is read, compared with other results.
+
+These are the landing gear's pins on finer cells and meshes than those of rows, clevises by contact
+in three dimensions, and pins drawn at random, on whose surface another reader must not find more
+stress than their row has.
 """
 
 from __future__ import annotations
@@ -24,9 +26,9 @@ from geometry import Pin, Segment
 PSI = 6894.757
 PINS, SEED = 40, 7
 MAX_GAP = 0.003  # m, between neighbouring lugs of the landing gear
-# Surface and section of the landing gear's pins at landing, ksi, on 16 rings of each band and four
-# meshes, by a prototype of its own (dense cells, the surface's stress by the traction imposed):
-# from, to. Their neighbouring lugs touch: the gaps of the study are closed.
+# Surface (lower and upper value) and section of the landing gear's pins at landing, ksi, on 16
+# rings of each band and four meshes, by an independent prototype (dense cells, the stress of the
+# surface from the imposed traction). Neighbouring lugs touch: the gaps of the study are closed.
 GEAR: dict[str, tuple[tuple[float, float], float]] = {
     "E": ((186.5, 186.5), 149.3),
     "J": ((144.0, 147.0), 148.1),
@@ -40,7 +42,7 @@ GEAR: dict[str, tuple[tuple[float, float], float]] = {
 
 
 def places(pins: int = PINS) -> str:
-    """Four tables; pins: how many are drawn."""
+    """Return the four tables. pins: number of pins drawn at random."""
     return "\n\n".join((_gear(), named_pins(), _clevises(), _random(pins)))
 
 
@@ -66,7 +68,7 @@ def _gear() -> str:
 
 
 def _without_gaps(pin: Pin) -> Pin:
-    """Return a pin whose neighbouring lugs touch: each takes half of the gap beside it."""
+    """Return a pin whose neighbouring lugs touch: each takes half of the gap next to it."""
     segments = list(pin.segments)
     for k, gap in enumerate(pin.segments):
         if gap.length < MAX_GAP:
@@ -77,7 +79,7 @@ def _without_gaps(pin: Pin) -> Pin:
 
 
 def _numbers(peak: Maximum, unit: float, digits: int) -> tuple[str, str, str, str]:
-    """Surface, section, row and what lies beneath."""
+    """Return surface, section, row and stress beneath contact as text, with errors."""
     found = peak.places
     assert found is not None
     assert found.section is not None
@@ -94,8 +96,10 @@ def _numbers(peak: Maximum, unit: float, digits: int) -> tuple[str, str, str, st
 
 
 def _clevises() -> str:
-    """Those whose largest stress is the tension fibre at mid-span, on the free side of the inner
-    lug; on stubby pins it is elsewhere.
+    """Return the table of the clevises whose largest stress is in the tension fibre at mid-span, on
+    the free side of the inner lug.
+
+    On stubby pins the largest stress is elsewhere.
     """
     rows = []
     for inner, outer, gap, clearance, _, fibre in (x for x in TRUTH if x[0] >= D * 1e3):
@@ -108,7 +112,9 @@ def _clevises() -> str:
 
 
 def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Maximum:
-    """Of a clevis of benchmarks/joints/joint.py, mm, whose outer lugs tilt against their shanks."""
+    """Return the maximum of a clevis of benchmarks/joints/joint.py, lengths in mm, whose outer lugs
+    tilt with their shanks.
+    """
     over, apart = Segment(0.002, D), Segment(gap / 1e3, D)
     left, middle, right = (
         Segment(t / 1e3, D, connection=name)
@@ -128,13 +134,13 @@ def clevis_row(inner: float, outer: float, gap: float, clearance: float) -> Maxi
 
 
 def _random(pins: int) -> str:
-    """How many pins break the rule, and by how much at most."""
+    """Return the number of pins that break the rule, and a table of these pins."""
     found: list[tuple[str, Checked]] = []
     failed: list[str] = []
     for trial in pin_trials(pins, SEED):
         try:
             found.append((trial.name, check(trial)))
-        except Exception as error:  # what cannot be solved is told, not hidden
+        except Exception as error:  # unsolved pins are listed, not hidden
             failed.append(f"{trial.name}: {error}")
     rows = [
         (name, f"{x.row / 1e6:.1f}", f"{x.error / 1e6:.1f}", f"{x.read / 1e6:.1f}", f"{x.z:.5f}")

@@ -1,4 +1,4 @@
-"""Pins in lugs drawn at random, seeded: what smaller models of a joint are tried on."""
+"""Pins in lugs drawn at random from a seed, on which smaller models of a joint are tested."""
 
 from __future__ import annotations
 
@@ -26,10 +26,12 @@ class JointTrial:
 
 
 def joint_trials(count: int, seed: int) -> list[JointTrial]:
-    """Single and double shear without clearance; diameters of 5 to 100 mm, lugs 0.3 to 3 of them
-    thick and 1.6 to 4 wide, gaps up to 0.3, moduli up to 3 times apart; one pin in three is a tube
-    with a bore of up to 0.7, one in three has shoulders. Lugs are guided, free to tilt or on the
-    bending stiffness of a shank.
+    """Return joints in single and double shear without clearance.
+
+    Diameters are 5 to 100 mm; lugs are 0.3 to 3 diameters thick and 1.6 to 4 wide, with gaps of up
+    to 0.3; moduli differ by up to a factor of 3. One pin in three is a tube with a bore of up to
+    0.7, one in three has shoulders. Lugs are guided, free to tilt, or on the bending stiffness of a
+    shank.
     """
     rng = np.random.default_rng(seed)
     return [_joint(rng, k) for k in range(count)]
@@ -60,7 +62,7 @@ def _joint(rng: np.random.Generator, k: int) -> JointTrial:
 
 
 def _lug(rng: np.random.Generator, name: str, d: float, thick: float, free: bool) -> Lug:
-    """free: whether it may be free to tilt."""
+    """Return a lug. free: whether it may be free to tilt."""
     stiff = 2.1e11 * 3.0 ** float(rng.uniform(-1.0, 1.0))
     across, arm = d * float(rng.uniform(1.6, 4.0)), float(rng.uniform(0.5, 1.5))
     shank = stiff * thick**3 / (12.0 * arm)  # as wide as the eye, held `arm` widths away
@@ -69,8 +71,9 @@ def _lug(rng: np.random.Generator, name: str, d: float, thick: float, free: bool
 
 
 def filleted_trials(count: int, seed: int) -> list[JointTrial]:
-    """The same with a middle that is 1.05 to 1.4 times as thick, with fillets that are 0.15 to 0.3
-    diameters from the edges of lugs, which are rounded by up to 0.05; guided.
+    """Return joints whose pin has a middle 1.05 to 1.4 times as thick, with guided lugs.
+
+    The fillets are 0.15 to 0.3 diameters from the edges of lugs, which are rounded by up to 0.05.
     """
     rng = np.random.default_rng(seed)
     return [_filleted(rng, k) for k in range(count)]

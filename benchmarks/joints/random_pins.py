@@ -1,5 +1,5 @@
-"""Pins with shoulders, grooves and bores in lugs, drawn at random, seeded, and a reader of their
-surface that shares nothing with the program's own: what rows are tried on.
+"""Pins with shoulders, grooves and bores in lugs, drawn at random from a seed, on which rows are
+tested with an independent reader of the surface.
 """
 
 from __future__ import annotations
@@ -24,26 +24,27 @@ STEEL = Material("steel", 2.1e11, 0.3, 7850.0, 1e9)
 ALUMINIUM = Material("aluminium", 7e10, 0.33)
 STRESS = 1e8  # force over the diameter squared, Pa
 EVERY = 720  # angles at which the surface is read
-AHEAD = 1e-6  # of the diameter: how near a point is to the end of a cell that it is on
+AHEAD = 1e-6  # relative; a point nearer than this to the end of a cell is on the cell
 
 
 @dataclass(frozen=True)
 class PinTrial:
-    """A pin in its lugs in one case; between: of a motion."""
+    """A pin in its lugs in one case."""
 
     given: PinProblem
 
     @property
     def name(self) -> str:
-        """Of the pin, with what is special about it."""
+        """The name of the pin, which describes its shape."""
         return self.given.pin.name
 
 
 def pin_trials(count: int, seed: int) -> list[PinTrial]:
-    """Two to four lugs, 0.3 to 1.5 diameters thick, up to 0.5 apart; a fillet 0.02 to 0.2 from the
-    edge of a lug on half of all gaps that have room for one, a groove in some; one pin in three is
-    a tube; edges sharp or rounded by up to 0.05, clearance up to 0.002 (of the diameter); one in
-    three is in a motion of four instants.
+    """Return pins in two to four lugs, 0.3 to 1.5 diameters thick and up to 0.5 diameters apart.
+
+    Half of the gaps with room for it have a fillet 0.02 to 0.2 diameters from the edge of a lug,
+    some have a groove. One pin in three is a tube. Edges are sharp or rounded by up to 0.05
+    diameters, clearances are up to 0.002. One pin in three has a motion of four instants.
     """
     rng = np.random.default_rng(seed)
     return [_trial(rng, k) for k in range(count)]
@@ -74,7 +75,7 @@ def _trial(rng: np.random.Generator, k: int) -> PinTrial:
 def _gap(
     rng: np.random.Generator, own: float, d: float, bore: float
 ) -> tuple[list[Segment], float, str]:
-    """Segments between two lugs, the diameter beyond, and what it is."""
+    """Return the segments between two lugs, the diameter beyond, and a word for the gap."""
     draw, near = float(rng.random()), d * float(rng.uniform(0.02, 0.2))
     height = d * float(rng.uniform(0.04, 0.15))
     rho = height * float(rng.uniform(0.3, 0.9))
@@ -109,7 +110,7 @@ def _lug(rng: np.random.Generator, name: str, own: float, thick: float) -> Lug:
 
 
 def _loads(rng: np.random.Generator, names: str, d: float, instants: int) -> PinLoads:
-    """In balance at each instant: inner lugs pull against outer ones."""
+    """Return loads in equilibrium at each instant: inner lugs pull against outer ones."""
     shares = {2: (-1.0, 1.0), 3: (-0.5, 1.0, -0.5), 4: (-0.5, 0.5, 0.5, -0.5)}[len(names)]
     of_all = np.zeros((instants, len(names), 3))
     for axis, most in ((0, 1.0), (1, 0.5)):
@@ -121,7 +122,7 @@ def _loads(rng: np.random.Generator, names: str, d: float, instants: int) -> Pin
 
 
 def _between(loads: PinLoads) -> Between:
-    """Straight between the instants."""
+    """Return the loads between the instants, interpolated linearly."""
     known = loads.times
     assert known is not None
 
@@ -136,8 +137,10 @@ def _between(loads: PinLoads) -> Between:
 
 @dataclass(frozen=True)
 class Checked:
-    """A row, Pa, with its error, and the largest stress that the other reader finds, Pa, at z, m,
-    and an angle, degrees.
+    """A row compared with the other reader.
+
+    row, error: the maximum of the row and its error, Pa.
+    read: the largest stress that the other reader finds, Pa. z, angle: its place, m and degrees.
     """
 
     row: float
@@ -150,7 +153,7 @@ class Checked:
 
     @property
     def violates(self) -> bool:
-        """Whether the reader finds more than the row's number and its error."""
+        """Whether the reader finds more than the row's maximum with its error."""
         return self.read > (self.row + self.error) * (1.0 + 1e-9)
 
 
@@ -164,7 +167,10 @@ def check(trial: PinTrial, requirement: Requirement | None = None) -> Checked:
 
 
 def checked(found: Solution) -> Checked:
-    """Its row against what the other reader finds at the row's instant."""
+    """Return the row of a solution compared with the other reader's result at the row's instant.
+
+    Raises: ValueError for a pin without contact or maximum.
+    """
     peak, places = found.peak, found.peak.places
     if places is None or places.contact is None or peak.max_von_mises is None:
         raise ValueError(peak.note)
@@ -179,8 +185,9 @@ def checked(found: Solution) -> Checked:
 def read_surface(
     fields: MeridianFields, loads: PinLoads, instant: int, pressed: Sequence[PressedCell]
 ) -> tuple[float, float, float]:
-    """The largest von Mises stress (Pa) of a surface without cells with pressure and those beside
-    them, where (z, m, and degrees).
+    """Return the largest von Mises stress of a surface, Pa, with its z, m, and angle, degrees.
+
+    Pressed cells and their neighbours are left out.
     """
     x, unit = fields.points[: fields.skin], fields.stress[: fields.skin]
     theta = np.linspace(0.0, 2.0 * np.pi, EVERY, endpoint=False)
@@ -201,7 +208,9 @@ def read_surface(
 
 
 def _shut(x: Floats, theta: Floats, pressed: Sequence[PressedCell]) -> np.ndarray:
-    """Which points (S, A) are on a pressed cell, or no farther from one than it is large."""
+    """Return the points (S, A) that are on a pressed cell, or within the size of the cell
+    from it.
+    """
     out = np.zeros((len(x), len(theta)), dtype=bool)
     for z0, z1, low, high in pressed:
         long, wide = (z1 - z0) * (1.0 + AHEAD), high - low

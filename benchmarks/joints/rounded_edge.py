@@ -1,7 +1,8 @@
-"""A lug shrunk on a pin, its bore's edges truly rounded, by axisymmetric finite elements of its
-own: bilinear quadrilaterals, nodes in contact facing each other, no friction. It shares nothing
-with the rings of fea.support.contact but the problem: there the rounding is a gap of a lug with
-sharp edges.
+"""A lug with rounded bore edges, shrunk on a pin, by independent axisymmetric finite elements.
+
+The elements are bilinear quadrilaterals with facing nodes in contact and no friction. They share
+only the problem with the rings of fea.support.contact, for which the rounding is a gap of a lug
+with sharp edges.
 """
 
 from __future__ import annotations
@@ -17,14 +18,17 @@ from skfem.helpers import ddot, sym_grad, trace
 from fea.core.material import Material
 from pinbase.arrays import Floats
 
-GROWTH = 1.1  # of each element over the one before, away from where contact ends
-FINE = 0.1  # of the edge's radius on both sides of where rounding begins: elements of one length
+GROWTH = 1.1  # ratio of successive elements, away from the end of contact
+FINE = 0.1  # of the edge's radius, on both sides of the start of rounding; elements are equal there
 
 
 @dataclass(frozen=True)
 class ShrinkFit:
-    """m. length: of the lug; radius: of its edges; outer: diameter; interference: of the
-    diameters; over: how far the pin goes on beyond the lug.
+    """A shrink fit; lengths in m.
+
+    length: of the lug. radius: of its edges. outer: its diameter.
+    interference: of the diameters.
+    over: length of the pin beyond the lug.
     """
 
     diameter: float
@@ -37,14 +41,17 @@ class ShrinkFit:
 
 @dataclass(frozen=True)
 class EdgeStress:
-    """The largest pressure, and von Mises stress of the pin beside the edge, Pa."""
+    """The largest pressure, and the largest von Mises stress of the pin near the edge, Pa."""
 
     pressure: float
     von_mises: float
 
 
 def edge_stress(fit: ShrinkFit, pin: Material, lug: Material, element: float) -> EdgeStress:
-    """element: the smallest, of the edge's radius. One half, mirrored at z = 0."""
+    """Return the stress at the edge, from one half of the fit, mirrored at z = 0.
+
+    element: the smallest one over the radius of the edge.
+    """
     z, gap, of_lug = _lug_grid(fit, element)
     on_pin = _pin_grid(fit, z, element)
     bodies = _Body(on_pin, pin, len(z), axis=True), _Body(of_lug, lug, len(z))
@@ -60,7 +67,11 @@ def edge_stress(fit: ShrinkFit, pin: Material, lug: Material, element: float) ->
 
 
 def _contact(soft: Floats, gap: Floats) -> Floats:
-    """Forces of an active set, N: none pulls, no gap is closed beyond touching."""
+    """Return the contact forces by an active set, N: no force pulls, and no gap is negative.
+
+    soft: (N, N) compliance, m/N. gap: (N,), m, negative for interference.
+    Raises: RuntimeError if the active set does not settle.
+    """
     active = gap < 0.0
     for _ in range(100):
         force = np.zeros(len(gap))
@@ -73,15 +84,17 @@ def _contact(soft: Floats, gap: Floats) -> Floats:
 
 
 def _growing(first: float, total: float) -> Floats:
-    """Lengths that add up to a total, from about `first` on."""
+    """Return lengths that grow from about `first` and add up to `total`."""
     count = max(1, int(np.log(total / first * (GROWTH - 1.0) + 1.0) / np.log(GROWTH)))
     parts = first * GROWTH ** np.arange(count)
     return np.asarray(parts * (total / parts.sum()))
 
 
 def _lug_grid(fit: ShrinkFit, element: float) -> tuple[Floats, Floats, Floats]:
-    """z of its nodes that face the pin, their gaps by the rounding, and all nodes (2, Z, R): a
-    rectangle of which one corner is laid round the quarter circle.
+    """Return the z of the lug's nodes that face the pin, their gaps by the rounding, and all nodes
+    (2, Z, R).
+
+    The grid is a rectangle, one corner of which follows the quarter circle of the rounding.
     """
     r, bore, outer, half = fit.radius, fit.diameter / 2.0, fit.outer / 2.0, fit.length / 2.0
     first, flat = element * r, half - r
@@ -111,7 +124,7 @@ def _lug_grid(fit: ShrinkFit, element: float) -> tuple[Floats, Floats, Floats]:
 def _between(
     along: tuple[Floats, Floats], across: tuple[Floats, Floats], part: Floats, rising: Floats
 ) -> Floats:
-    """Nodes (2, Z, R) between four sides, by transfinite interpolation."""
+    """Return the nodes (2, Z, R) between four sides, by transfinite interpolation."""
     u, v = part[None, :, None], rising[None, None, :]
     (low, high), (first, last) = along, across
     out = (1.0 - v) * low[:, :, None] + v * high[:, :, None]
@@ -122,7 +135,7 @@ def _between(
 
 
 def _pin_grid(fit: ShrinkFit, facing: Floats, element: float) -> Floats:
-    """All nodes (2, Z, R) of the pin, from its surface inwards."""
+    """Return all nodes (2, Z, R) of the pin, from its surface inwards."""
     first, R = element * fit.radius, fit.diameter / 2.0
     rest = _growing(first, fit.length / 2.0 + fit.over - facing[-1])
     z = np.concatenate([facing, facing[-1] + np.cumsum(rest)])
@@ -132,7 +145,7 @@ def _pin_grid(fit: ShrinkFit, facing: Floats, element: float) -> Floats:
 
 
 class _Body:
-    """On a grid of nodes (2, Z, R) of which the first `facing` ones of column 0 are in contact."""
+    """A body on a grid of nodes (2, Z, R); the first `facing` nodes of column 0 are in contact."""
 
     def __init__(self, grid: Floats, material: Material, facing: int, axis: bool = False) -> None:
         _, rows, columns = grid.shape
@@ -152,7 +165,7 @@ class _Body:
         one = np.zeros((len(self.free), facing))
         one[rows_of, np.arange(facing)] = 1.0
         self.moved = spla.splu(stiffness[self.free][:, self.free].tocsc()).solve(one)
-        self.softness = self.moved[rows_of]  # both ways: pushed inwards it moves inwards
+        self.softness = self.moved[rows_of]  # same sign for force and displacement
 
     def _stiffness(self) -> sp.csr_matrix:
         shear, rest = self.lame[1], self.lame[0]
@@ -167,7 +180,9 @@ class _Body:
         return sp.csr_matrix(work.assemble(self.basis))
 
     def von_mises(self, force: Floats, near: float) -> float:
-        """The largest at points of integration beyond z = near, Pa, pushed inwards."""
+        """Return the largest von Mises stress, Pa, at integration points beyond z = near, under
+        inward forces.
+        """
         u = np.zeros(self.basis.N)
         u[self.free] = -self.moved @ force
         field = self.basis.interpolate(u)

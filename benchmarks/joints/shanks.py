@@ -1,5 +1,5 @@
-"""The shank of a lug, which contact of the pin has as a spring against tilting: against a lug in
-three dimensions, and what its stiffness in the plane would change.
+"""The shank of a lug, which contact of the pin models as a spring against tilting: compared with a
+lug in three dimensions; and the effect of its stiffness in the plane, which contact leaves out.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Mask
 
 NU, BORE = 0.3, 20.0  # lengths in mm, stresses over Young's modulus
-# Head, width of the shank, its length to where it is held, thickness, mm
+# Head, width of the shank, its length to the held end, thickness, mm
 LUGS = (
     (50.0, 50.0, 50.0, 5.0),
     (50.0, 50.0, 50.0, 10.0),
@@ -45,22 +45,26 @@ LUGS = (
     (36.0, 36.0, 50.0, 10.0),
 )
 USUAL = 0.8  # integral of dx / width of a lug without a shank
-AT_BORE, GROWTH, LARGEST = 2.5, 0.25, 6.0  # of elements: at the bore, per distance from it, mm
+AT_BORE, GROWTH, LARGEST = (
+    2.5,
+    0.25,
+    6.0,
+)  # element size at the bore, mm, its growth, the largest, mm
 RING_LAYERS, AROUND, LAYERS = 5, 72, 3  # elements of a ring, and through the thickness
-ANGLES, NEAR = (75, 90, 105, 120), 6  # degrees from the shank where hoop stress is read, and about
-# Width of the shank, its length, mm, and whether it is pressed: of the clevises of `joint`
+ANGLES, NEAR = (75, 90, 105, 120), 6  # degrees from the shank at which hoop stress is read, ± NEAR
+# Width and length of the shank, mm, and whether it is in compression: of the clevises of `joint`
 SHANKS = ((50.0, 50.0, False), (50.0, 50.0, True), (30.0, 100.0, False), (24.0, 50.0, False))
 
 
 def shanks() -> str:
-    """Two tables."""
+    """Return the two tables."""
     return f"{_bent()}\n\n{_in_the_plane()}"
 
 
 @dataclass(frozen=True)
 class _Tilted:
-    """A bore under a pressure z cos: its tilt, rad, and hoop stress at the face by angle from the
-    shank, each over the couple.
+    """The tilt of a bore under a pressure z cos, rad, and the hoop stress at its face by angle from
+    the shank, each over the couple.
     """
 
     tilt: float
@@ -68,7 +72,9 @@ class _Tilted:
 
 
 def _bent() -> str:
-    """Stiffness against tilting, and hoop stress beyond that of the eye alone."""
+    """Return the table of the stiffness against tilting, and of the hoop stress beyond that of the
+    eye alone.
+    """
     rows = []
     for head, width, length, thick in LUGS:
         lug, ring = _lug(head, width, length, thick), _ring(head, thick)
@@ -88,7 +94,9 @@ def _bent() -> str:
 
 
 def _lug(head: float, width: float, length: float, thick: float) -> MeshHex:
-    """A round head about its bore with a shank along x, of quadrilaterals through the thickness."""
+    """Return a mesh of a round head about its bore with a shank along x, with hexahedra through the
+    thickness.
+    """
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -107,7 +115,7 @@ def _lug(head: float, width: float, length: float, thick: float) -> MeshHex:
         sizes.setAsBackgroundMesh(3)
         for option, value in (("MeshSizeExtendFromBoundary", 0), ("RecombineAll", 1)):
             gmsh.option.setNumber(f"Mesh.{option}", value)
-        gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)  # of quadrilaterals alone
+        gmsh.option.setNumber("Mesh.SubdivisionAlgorithm", 1)  # gives quadrilaterals only
         gmsh.model.mesh.generate(2)
         tags, x, _ = gmsh.model.mesh.getNodes()
         _, corners = gmsh.model.mesh.getElementsByType(3)
@@ -129,7 +137,7 @@ def _ring(head: float, thick: float) -> MeshHex:
 
 
 def _through(points: Floats, quads: np.ndarray, thick: float) -> MeshHex:
-    """Hexahedra over quadrilaterals (4, M), counter-clockwise."""
+    """Return hexahedra over quadrilaterals (4, M), whose corners are counter-clockwise."""
     count, z = points.shape[1], np.linspace(-thick / 2, thick / 2, LAYERS + 1)
     nodes = np.hstack([np.vstack([points, np.full(count, at)]) for at in z])
     a, b, c, d = quads
@@ -141,11 +149,14 @@ def _through(points: Floats, quads: np.ndarray, thick: float) -> MeshHex:
 
 
 def _tilted(mesh: MeshHex, at_end: bool, held: float = 0.0, outer: float | None = None) -> _Tilted:
-    """A bore, over Young's modulus, under a pressure z cos on the half of it away from the shank
-    (`at_end`) or towards it. Its tilt is by the work.
+    """Return the tilt of a bore, over Young's modulus, under a pressure z cos on one half of the
+    bore.
 
-    held: x of the end that is held; or outer: radius of a ring, whose outer surface reacts by a
-    traction along x, linear in z, and from whose mean motion the tilt counts.
+    at_end: whether the pressed half is the one away from the shank. The tilt is found from the work
+    of the pressure.
+    held: x of the end that is held.
+    outer: radius of a ring instead. Its outer surface reacts by a traction along x that is linear
+    in z, and the tilt is relative to the mean motion of this surface.
     """
     basis = Basis(mesh, ElementVector(ElementHex2()), intorder=4)
     lam, mu = NU / (1.0 + NU) / (1.0 - 2.0 * NU), 0.5 / (1.0 + NU)
@@ -186,7 +197,9 @@ def _tilted(mesh: MeshHex, at_end: bool, held: float = 0.0, outer: float | None 
 
 
 def _hoop(bore: FacetBasis, moved: Floats) -> Floats:
-    """The hoop stress at a face near ANGLES from x, by the least squares of its slope along z."""
+    """Return the hoop stress at a face near ANGLES from x, from the least-squares slope of the
+    stress along z.
+    """
     strain = np.asarray(sym_grad(bore.interpolate(moved)))
     x, y, z = np.asarray(bore.global_coordinates())
     r = np.hypot(x, y)
@@ -204,7 +217,9 @@ def _hoop(bore: FacetBasis, moved: Floats) -> Floats:
 
 
 def _guides(mesh: MeshHex, basis: Basis, outer: float) -> tuple[Floats, Floats]:
-    """The forces along x on the outer surface, linear in z and even, and the motions with them."""
+    """Return the forces along x on the outer surface, linear in z and constant, and the rigid
+    motions that they hold.
+    """
     surface = _facets(mesh, basis, lambda x: np.hypot(x[0], x[1]) > 0.97 * outer)
 
     @LinearForm
@@ -222,14 +237,16 @@ def _guides(mesh: MeshHex, basis: Basis, outer: float) -> tuple[Floats, Floats]:
 
 
 def _facets(mesh: MeshHex, basis: Basis, where) -> FacetBasis:  # type: ignore[no-untyped-def]
-    """The boundary facets whose middles lie somewhere, but for those of both faces."""
+    """Return the boundary facets whose middles satisfy a condition, without those of both faces."""
     facets = mesh.facets_satisfying(where, boundaries_only=True)
     z = mesh.p[2, mesh.facets[:, facets]]
     return FacetBasis(mesh, basis.elem, facets=facets[np.ptp(z, axis=0) > 1e-9], intorder=6)
 
 
 def _in_the_plane() -> str:
-    """Bending moment and stress at mid-span, changed by the shank's stiffness in the plane."""
+    """Return the table of the changes of bending moment and stress at mid-span by the shank's
+    stiffness in the plane.
+    """
     rows = []
     for (width, length, pressed), case in (
         (shank, joint.TRUTH[k]) for shank in SHANKS for k in (0, 2, 7)
@@ -257,10 +274,12 @@ def _in_the_plane() -> str:
 
 
 def _added(shank: LugOutline, bands: Bands, sectors: int, turns: list[float]) -> Floats:
-    """What shanks add to the displacement of cells under forces on them, (U, U) m/N, even through
-    the thickness: that of the lug in its plane, less that of its ring.
+    """Return the contribution of shanks to the displacements of cells under forces on them, (U, U),
+    m/N.
 
-    turns: of the shank of each band, rad.
+    It is the flexibility of the lug in its plane less that of its ring, constant through the
+    thickness.
+    turns: angle of the shank of each band, rad.
     """
     eye = replace(shank, shape="ring")
     elastic = Elasticity(NU)

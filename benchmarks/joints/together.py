@@ -1,5 +1,5 @@
-"""How far the ends of a joint's properties, alone and all together, hold the stress of any
-combination of them, with some as given: on joints drawn at random.
+"""The ends of a joint's properties, each alone and all together, as bounds of the stress for any
+combination of properties, on joints drawn at random.
 """
 
 from __future__ import annotations
@@ -24,11 +24,13 @@ from fea.support.records import TOGETHER, Variation
 from pinbase.arrays import Floats
 
 COUNT, SEED = 24, 11
-LEAST_CLEARANCE = 5e-4  # diameters, in every second joint, whose contact is then narrow
+LEAST_CLEARANCE = 5e-4  # diameters, in every second joint, which makes contact narrow
 
 
 def together() -> str:
-    """A table: how far the ends over the changes that are tried fall short of those over all."""
+    """Return the table of the amounts by which the ends over the tried changes fall short of those
+    over all.
+    """
     rows = [x for x in map(shortfalls, joints(COUNT, SEED)) if x is not None]
     short = np.array([of for of, *_ in rows])
     tried, every = (sum(x[k] for x in rows) / len(rows) for k in (1, 2))
@@ -43,7 +45,7 @@ def together() -> str:
 
 
 def joints(count: int, seed: int) -> list[PinTrial]:
-    """Pins under one instant of loads, every second one with a clearance at least."""
+    """Return pins under one instant of loads, every second one with at least LEAST_CLEARANCE."""
     trials = [x for x in pin_trials(2 * count, seed) if x.given.cases[0].times is None][:count]
     return [_loose(x) if k % 2 else x for k, x in enumerate(trials)]
 
@@ -60,8 +62,10 @@ def _loose(trial: PinTrial) -> PinTrial:
 
 
 def shortfalls(trial: PinTrial) -> tuple[Floats, int, int] | None:
-    """By how much the ends over the changes that are tried fall short of those over all, relative,
-    (3,); how many are tried, and how many there are. None where no two can be combined.
+    """Return the amounts by which the ends over the tried changes fall short of those over all,
+    (3,), relative; and the numbers of changes that are tried and of all changes.
+
+    The result is None if no two changes can be combined.
     """
     given = trial.given
     model = ContactModel(profile_of(given.pin), given.material, given.lugs, ROUGH)
@@ -90,7 +94,7 @@ def _name(change: JointChange | Variation) -> str:
 
 
 def _combinations(model: ContactModel, singles: Sequence[JointChange]) -> list[JointChange]:
-    """Every combination of two or more properties, each at either end."""
+    """Return every combination of two or more properties, each at either end."""
     ends: dict[str, list[JointChange | None]] = {}
     for change in singles:
         ends.setdefault(change.what, [None]).append(change)

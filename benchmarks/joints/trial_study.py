@@ -1,4 +1,4 @@
-"""Pins drawn at random as files of studies, so that they can be run as a user runs them."""
+"""Pins drawn at random, written as study files, so that they can be run as a user runs them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from geometry import Pin, Segment
 
 
 def write_study(trial: PinTrial, folder: Path) -> Path:
-    """trial.toml in a folder, and the table of its loads; numbers in SI, with all their digits."""
+    """Write trial.toml and the table of its loads into a folder; return the path of trial.toml.
+
+    Numbers are in SI units, with all their digits.
+    """
     given = trial.given
     (loads,) = given.cases
     times = np.zeros(1) if loads.times is None else loads.times
@@ -71,8 +74,11 @@ def _lug(lug: Lug) -> str:
 
 
 def tapered(bore: float) -> PinTrial:
-    """Two lugs of 20 and 24 mm, a cone between them whose thin end is rounded 0.05 d from a lug,
-    and a chamfer at the other end; bore: of the diameters, at the thin end, wider at the other.
+    """Return a pin in two lugs, 20 and 24 mm in diameter, with a cone between them and a chamfer at
+    one end.
+
+    The thin end of the cone has a fillet 0.15 d from a lug.
+    bore: over the diameter at the thin end; it is wider at the other end.
     """
     d, thick = 0.020, 0.024
     hole = bore * d

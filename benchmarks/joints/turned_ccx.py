@@ -1,8 +1,9 @@
-"""Contact in three dimensions, by CalculiX, of pins that are more than cylinders: a groove with
-flanks of 45 degrees and rounded corners in each gap of a clevis, a bore, interference.
+"""Contact in three dimensions by CalculiX of pins that are not plain cylinders: with a groove, with
+flanks of 45 degrees and rounded corners, in each gap of a clevis; with a bore; with interference.
 
-The mesh is that of assess.opinion.calculix_joint for a plain pin with layers where the groove has
-nodes; nodes are moved inwards with an outline that is written here, and towards the surface.
+The mesh is that of assess.opinion.calculix_joint for a plain pin, with layers at the stations of
+the groove. Its nodes are moved inwards to the outline, which is written here, and closer to the
+surface.
 """
 
 from __future__ import annotations
@@ -23,15 +24,19 @@ from geometry import Pin, Segment
 from pinbase.arrays import Floats
 
 LAYERS = 3  # pairs of layers of elements along each rounded corner
-FLAT = 2  # such pairs along half of the floor
-DENSER = 0.6  # elements at the surface, or at the bore, are 1 - DENSER as thick as on even circles
+FLAT = 2  # pairs of layers along half of the floor
+DENSER = 0.6  # elements at the surface, or the bore, are 1 - DENSER times as thick as even ones
 LITTLE = 1e-9  # of a radius
 
 
 @dataclass(frozen=True)
 class Groove:
-    """In a shaft of a diameter, m: how deep, the length of its floor between the corners that are
-    rounded, and their radius; rim: of the shaft left on either side.
+    """A groove in a shaft; lengths in m.
+
+    diameter: of the shaft.
+    floor: length of the floor between the rounded corners.
+    radius: of the corners.
+    rim: length of the shaft on either side.
     """
 
     diameter: float
@@ -42,7 +47,7 @@ class Groove:
 
     @property
     def segments(self) -> tuple[Segment, ...]:
-        """Of a pin's profile."""
+        """The segments of a pin's profile."""
         d, inner = self.diameter, self.diameter - 2.0 * self.depth
         return (
             Segment(self.rim, d, fillet=0.0),
@@ -57,7 +62,7 @@ class Groove:
         return 2.0 * (self.rim + self.depth) + self.floor
 
     def radius_at(self, z: Floats) -> Floats:
-        """Of the outline, m, at z (m) from its start on."""
+        """Return the radius of the outline, m, at z, m, from the start of the groove."""
         off = np.abs(z - 0.5 * self.length)  # from the middle of the floor
         tangent = self.radius * math.tan(math.pi / 8.0)
         start = 0.5 * self.floor - tangent
@@ -68,7 +73,9 @@ class Groove:
         return np.asarray(np.minimum(floor + round_ + flank, 0.5 * self.diameter))
 
     def stations(self) -> Floats:
-        """From its start on, m: ends of layers, one mid-node between any two."""
+        """Return the z of the nodes, m, from the start of the groove: ends of layers, with a
+        mid-node between any two.
+        """
         start = 0.5 * self.floor - self.radius * math.tan(math.pi / 8.0)
         turn = np.linspace(0.0, math.pi / 4.0, LAYERS + 1)
         arc = start + self.radius * np.sin(turn)
@@ -88,9 +95,11 @@ def turned_opinion(
     fineness: Fineness,
     denser: float = DENSER,
 ) -> JointOpinion:
-    """pin: as if it had no grooves. grooves: with the z, m, of their starts. denser: at the
-    surface; negative: at the bore.
+    """Return CalculiX's result for a turned pin.
 
+    pin: without its grooves.
+    grooves: each with the z of its start, m.
+    denser: refinement at the surface, or if negative at the bore.
     Raises: as assess.opinion.calculix_joint.joint_opinion.
     """
     cuts = [z for z0, groove in grooves for z in z0 + groove.stations()]
@@ -106,7 +115,7 @@ def turned_opinion(
 def _moved(
     nodes: Floats, pin: Pin, grooves: Sequence[tuple[float, Groove]], denser: float
 ) -> Floats:
-    """Of a pin of one diameter and one bore."""
+    """Return the moved nodes of a pin with one diameter and one bore."""
     x, shaft = nodes.copy(), pin.segments[0]
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
     bore, full = 0.5 * shaft.bore, 0.5 * shaft.diameter
@@ -121,7 +130,7 @@ def _moved(
 
 
 def _cut(pin: Pin, at: Floats) -> Pin:
-    """Segments without lugs cut there."""
+    """Return a pin whose segments without lugs are divided at the given z."""
     out: list[Segment] = []
     for segment, start in zip(pin.segments, pin.stations, strict=False):
         inside = at[(at > start + 1e-9) & (at < start + segment.length - 1e-9)]

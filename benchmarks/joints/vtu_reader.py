@@ -1,6 +1,8 @@
-"""What someone finds on the surface of a pin who has nothing but the folder of a run: pyvista opens
-its VTU files, and results.json tells which cells lugs press on. Nothing of the program is used: not
-its mask of what is pressed, nor its von Mises stress, which is computed here from the tensor.
+"""An independent reader of the surface of a pin that uses only the folder of a run.
+
+pyvista opens the VTU files, and results.json lists the cells on which lugs press. No code of the
+program is used: neither its mask of the pressed surface, nor its von Mises stress, which is
+computed here from the tensor.
 """
 
 from __future__ import annotations
@@ -17,19 +19,22 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Row = dict[str, Any]
 
-NEAR = 1e-6  # of a cell: how near to its end a node is on it, for files have seven digits
-INSIDE = 0.05  # of a cell: nodes so far from its ends are on the band alone
+NEAR = 1e-6  # of a cell; a node nearer than this to its end is on it, as files have seven digits
+INSIDE = 0.05  # of a cell; nodes farther than this from its ends are on the band only
 OUTSIDE = 1e-3  # of the radius
-FILE = 1e-5  # of the stress: what seven digits of six components leave
+FILE = 1e-5  # of the stress; error by the seven digits of six components
 
 
 @dataclass(frozen=True)
 class SurfaceRead:
-    """The row of a pin and case against what is read of its surface, in the stress unit of the
-    study, where (z, in its length unit, and degrees) and in which file.
+    """The row of a pin and case compared with the stress read on its surface, in the units of the
+    study.
 
-    aside: how far, in cells along z, the place is from the nearest pressed one that covers its
-    angle (inf: none does); cell: the length of that one.
+    row, upper: the row's maximum and its upper end. governs: the place that governs the row.
+    read: the largest stress read in `file`. z, angle: its place, the angle in degrees.
+    aside: distance along z, in cells, from the nearest pressed cell at this angle; inf if there is
+    none.
+    cell: the length of this cell.
     """
 
     pin: str
@@ -46,7 +51,7 @@ class SurfaceRead:
 
     @property
     def violates(self) -> bool:
-        """Whether the surface has more than the row's number and its error."""
+        """Whether the surface has more stress than the row with its error."""
         return self.read > self.upper * (1.0 + FILE)
 
     def __str__(self) -> str:
@@ -58,8 +63,12 @@ class SurfaceRead:
 
 
 def read_folder(folder: Path, grown: float = 0.0) -> list[SurfaceRead]:
-    """Of every row in contact with a VTU file, and of the outside of its solid where there is one.
-    grown: by how many cells what is pressed is made larger on every side, at most 1.
+    """Return the values read for every row in contact that has VTU files, also on the outside of
+    its solids.
+
+    grown: number of cells, at most 1, by which the pressed area is enlarged on every side.
+
+    Raises: ValueError for another `grown`.
     """
     if not 0.0 <= grown <= 1.0:
         raise ValueError("pressed cells may be grown by one cell at most")
@@ -92,7 +101,7 @@ def _read(row: Row, file: str, body: Any, unit: str, grown: float) -> SurfaceRea
 
 
 def upper(row: Row) -> float:
-    """The most that a row says: of a singular one the end of its interval."""
+    """Return the upper end of a row's maximum; for a singular row the end of its interval."""
     interval = row["max_von_mises_interval"]
     if interval is None:
         return float(row["max_von_mises"] + row["error_estimate"])
@@ -100,15 +109,16 @@ def upper(row: Row) -> float:
 
 
 def von_mises(s: Floats) -> Floats:
-    """Of tensors (N, 6) in the order of VTK: XX, YY, ZZ, XY, YZ, XZ."""
+    """Return the von Mises stress of tensors (N, 6) in VTK's order: XX, YY, ZZ, XY, YZ, XZ."""
     direct = (s[:, 0] - s[:, 1]) ** 2 + (s[:, 1] - s[:, 2]) ** 2 + (s[:, 2] - s[:, 0]) ** 2
     return np.asarray(np.sqrt(0.5 * direct + 3.0 * (s[:, 3:] ** 2).sum(axis=1)))
 
 
 def shut(points: Floats, cells: Floats, grown: float) -> NDArray[np.bool_]:
-    """Which points (N, 3) are on cells (M, 4: z from, to, degrees from, to), closed and grown.
+    """Return which points (N, 3) are on pressed cells, including their enlarged edges.
 
-    A point in a bore is on none: cells are where the surface between their ends is farthest out.
+    cells: (M, 4), start z, end z, start and end angle in degrees. Points in a bore are on no cell:
+    cells are on the outermost surface between their ends.
     """
     out = np.zeros(len(points), dtype=bool)
     angle, z = np.degrees(np.arctan2(points[:, 1], points[:, 0])), points[:, 2]
@@ -117,7 +127,7 @@ def shut(points: Floats, cells: Floats, grown: float) -> NDArray[np.bool_]:
         more = (grown + NEAR) * (z1 - z0)
         within = (z > z0 + INSIDE * (z1 - z0)) & (z < z1 - INSIDE * (z1 - z0))
         near = (z >= z0 - more) & (z <= z1 + more)
-        if not within.any():  # no node but at its ends
+        if not within.any():  # the cell has nodes only at its ends
             within = near
         near &= radius > (1.0 - OUTSIDE) * radius[within].max()
         for low, high in cells[(cells[:, 0] == z0) & (cells[:, 1] == z1), 2:]:
@@ -127,8 +137,8 @@ def shut(points: Floats, cells: Floats, grown: float) -> NDArray[np.bool_]:
 
 
 def _aside(point: Floats, cells: Floats) -> tuple[float, float]:
-    """Of the pressed cells that cover the angle of a point, how many of its own lengths the nearest
-    is away along z, and that length.
+    """Return the distance along z of the nearest pressed cell at the angle of a point, in lengths
+    of this cell, and this length.
     """
     angle = np.degrees(np.arctan2(point[1], point[0]))
     turn = np.abs((angle - 0.5 * (cells[:, 2] + cells[:, 3]) + 180.0) % 360.0 - 180.0)

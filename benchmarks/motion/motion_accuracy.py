@@ -1,4 +1,6 @@
-"""Speed against accuracy of the motion: samples, closed form, Newton, integration with drift."""
+"""Speed and accuracy of the motion: by samples, in closed form, by Newton, and by integration,
+which drifts.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ STEPS = (20, 40, 80, 160, 320)
 
 
 def motion_accuracy() -> str:
-    """Peak reactions by samples, and point F by three methods; draws the chart in docs/images."""
+    """Return the tables of peak reactions by number of samples, and of point F by three methods;
+    draw the chart in docs/images.
+    """
     study = load_study(STUDY)
     mechanism, courses, end = linkage(study), laws(study), span(study)
 
@@ -48,7 +52,9 @@ def motion_accuracy() -> str:
 
 
 def _peaks(at: Callable[[Floats], Reactions], span: float) -> list[tuple[float, ...]]:
-    """Largest relative error of all connections' peaks: from samples alone, and refined."""
+    """Return the largest relative error of the peaks of all connections: from samples alone, and
+    refined.
+    """
 
     def resolved(times: Floats) -> Floats:
         return np.array([p.value for p in peak_forces(times, at).force.values()])
@@ -72,7 +78,9 @@ def _peaks(at: Callable[[Floats], Reactions], span: float) -> list[tuple[float, 
 
 
 def _ways(linkage: Linkage, law: object, span: float) -> list[tuple[object, ...]]:
-    """Speed of joint F at 201 instants: closed form, Newton, integration of the accelerations."""
+    """Return the rows for the speed of joint F at 201 instants: closed form, Newton, integration of
+    the accelerations.
+    """
     times = np.linspace(0.0, span, 201)
     slider = linkage.drives[0]
     assert isinstance(slider, Slider)
@@ -132,12 +140,14 @@ def _error(found: Floats, exact: Floats) -> float:
 
 
 def _gap(loops: PlanarEquations, q: Floats) -> float:
-    """Largest gap of a closed loop, m."""
+    """Return the largest gap of a closed loop, m."""
     return float(np.abs(loops.place(loops.pose(q), loops.closures)).max())
 
 
 def _rate(loops: PlanarEquations, law: object, t: float, y: Floats) -> Floats:
-    """Rates of coordinates and speeds: the index-reduced equations, which let loops drift open."""
+    """Return the rates of coordinates and speeds, by the index-reduced equations, with which loops
+    drift open.
+    """
     q, v = y[None, : loops.columns], y[None, loops.columns :]
     pose = loops.pose(q)
     second = law(np.array([t]))[2][None]  # type: ignore[operator]

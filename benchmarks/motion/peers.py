@@ -1,4 +1,4 @@
-"""The motions on which other codes are set beside ours, and what each code gives for them."""
+"""The motions for which other codes are compared with ours, and the result of each code."""
 
 from __future__ import annotations
 
@@ -33,8 +33,10 @@ INCH, POUND = 0.0254, 0.45359237
 
 @dataclass(frozen=True)
 class Case:
-    """A linkage with one drive, at rest as drawn and then moved. times: T instants to compare, s,
-    equally spaced; the start is not among them, because the other codes begin with a transient.
+    """A linkage with one drive, at rest as drawn and then moved.
+
+    times: T instants to compare, s, equally spaced. The start is not among them, because the other
+    codes begin with a transient.
     """
 
     name: str
@@ -43,14 +45,14 @@ class Case:
     times: Floats
 
     def drive(self, time: float) -> tuple[float, float, float]:
-        """How far the drive has gone from the drawn position, its rate and second rate."""
+        """Return the travel of the drive from the drawn position, its rate and second rate."""
         value, rate, second = (float(x[0]) for x in self.law(np.array([time])))
         return value - self.linkage.drives[0].drawn, rate, second
 
 
 @dataclass(frozen=True)
 class Found:
-    """forces (T, C, 2) on the pins in world axes, N; drive (T,), N or N m."""
+    """A result. forces: (T, C, 2) on the pins in world axes, N. drive: (T,), N or N m."""
 
     forces: Floats
     drive: Floats
@@ -58,8 +60,11 @@ class Found:
 
 @dataclass(frozen=True)
 class Code:
-    """Another code. solve: for a case and a number of steps from one instant to the next; steps:
-    numbers to try, doubling. shares: whether it follows our rule where connections share.
+    """Another code.
+
+    solve: solves a case with a number of steps from one instant to the next.
+    steps: the numbers to try, each twice the one before.
+    shares: whether the code follows our rule where connections share a force.
     """
 
     name: str
@@ -69,20 +74,22 @@ class Code:
 
 
 def ours(case: Case) -> Found:
-    """What pinstress finds."""
+    """Return the result of pinstress."""
     found = motion_reactions(case.name, move(case.linkage, [case.law], case.times))
     return Found(found.reactions.forces[..., :2], found.drive[:, 0])
 
 
 def landing_gear() -> Case:
-    """The retract motion of studies/grenier2008.toml: a slider drives, gravity acts."""
+    """Return the retract motion of studies/grenier2008.toml, driven by a slider under gravity."""
     study = load_study(STUDY)
     (law,) = laws(study)
     return Case("landing gear", linkage(study), law, _instants(span(study)))
 
 
 def four_bar() -> Case:
-    """Bowman's crank and rocker (2019) from 236.09 to 360 degrees in 5 s; no gravity."""
+    """Return Bowman's crank and rocker (2019) from 236.09 to 360 degrees in 5 s, without
+    gravity.
+    """
     start = radians(236.09)
     crank_pin = 12.0 * np.exp(1j * start)
     pivot = complex(-32.0, 0.0)
@@ -118,7 +125,9 @@ def _bar(name: str, pounds: float, inertia: float, start: complex, end: complex)
 
 
 def _dyad(first: complex, second: complex, from_first: float, from_second: float) -> complex:
-    """The point at these distances from two others, right of the line from first to second."""
+    """Return the point at these distances from two others, to the right of the line from the first
+    to the second.
+    """
     line = second - first
     along = (abs(line) ** 2 + from_first**2 - from_second**2) / (2.0 * abs(line))
     return first + line / abs(line) * (along - 1j * sqrt(from_first**2 - along**2))

@@ -1,4 +1,4 @@
-"""The drop of a leg beside exudyn: two masses, a gas spring with oil, and a tyre."""
+"""The drop of a leg compared with exudyn: two masses, a gas spring with oil, and a tyre."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ STEPS = (4_000, 16_000)
 
 
 def peers_drop() -> str:
-    """Largest forces and ways of both, and the largest difference over the whole course."""
+    """Return the table of the largest forces and strokes by both, and the largest differences over
+    time.
+    """
     try:
         import exudyn  # noqa: F401
     except ModuleNotFoundError:
@@ -56,7 +58,9 @@ def _tyre(_s: object, _t: float, _n: int, way: float, _v: float, *_: float) -> f
 
 
 def _exudyn(steps: int) -> tuple[Floats, Floats]:
-    """Times (T,) s, and ground force, strut force and stroke then, (T, 3)."""
+    """Return times (T,), s, and at these the ground force, the strut force and the
+    stroke, (T, 3).
+    """
     import exudyn as exu
     import exudyn.itemInterface as item
 
@@ -65,8 +69,12 @@ def _exudyn(steps: int) -> tuple[Floats, Floats]:
     earth = system.AddNode(item.NodePointGround())
     markers = [system.AddMarker(item.MarkerNodeCoordinate(nodeNumber=earth, coordinate=0))]
     lifted = LEG.lift * LEG.weight
-    held = LEG.sprung * LEG.gravity * LEG.lift - lifted  # by the strut at first, without the tyre
-    begin = (held - float(GAS.force(np.zeros(1))[0])) / STOP  # so that the stop does not ring
+    held = (
+        LEG.sprung * LEG.gravity * LEG.lift - lifted
+    )  # the strut's initial force, without the tyre
+    begin = (
+        held - float(GAS.force(np.zeros(1))[0])
+    ) / STOP  # initial equilibrium, so that the stop does not vibrate
     for mass, lift, at in ((LEG.unsprung, 0.0, 0.0), (LEG.sprung, lifted, begin)):
         node = system.AddNode(
             item.Node1D(

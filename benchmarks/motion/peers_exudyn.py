@@ -1,7 +1,9 @@
-"""The linkage in exudyn: its planar bodies and joints, integrated in time by generalised alpha.
+"""The linkage in exudyn: planar bodies and joints, integrated in time by the generalised alpha
+method.
 
-Drives are constraints on position (index 3). Connections that share by a rule are what the rule
-says, springs: so stiff that their give is of the size of the error in time, and falls like it.
+Drives are constraints on position (index 3). Connections that share a force are springs, as the
+sharing rule states; they are so stiff that their deflection is of the size of the error in time,
+and decreases with it.
 """
 
 from __future__ import annotations
@@ -16,11 +18,11 @@ from loads.linkage.parts import Point
 from pinbase.arrays import Floats
 
 STEPS = (40, 80, 160)
-SPRING = 1e9  # N/m at the first of these, four times that with every halving of the step
+SPRING = 1e9  # N/m for the first of these; four times as stiff with every halving of the step
 
 
 def solve(case: Case, steps: int) -> Found:
-    """Forces and drive, with `steps` of time from one instant to the next."""
+    """Return forces and drive, with `steps` time steps from one instant to the next."""
     model = _Model(case, SPRING * (steps / STEPS[0]) ** 2)
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
@@ -28,9 +30,9 @@ def solve(case: Case, steps: int) -> Found:
     course = settings.timeIntegration
     course.endTime = case.times[-1]
     course.numberOfSteps = steps * len(case.times)
-    course.generalizedAlpha.spectralRadius = 0.5  # forgets the transient at the start
+    course.generalizedAlpha.spectralRadius = 0.5  # damps the transient at the start
     course.newton.useModifiedNewton = False
-    course.newton.relativeTolerance = 1e-8  # rounding in the stiff springs allows no less
+    course.newton.relativeTolerance = 1e-8  # the least that round-off in the stiff springs allows
     model.system.Assemble()
     model.system.SolveDynamic(settings)
     forces = np.stack([model.stored(sensor) for sensor in model.connections], axis=1)
@@ -38,7 +40,10 @@ def solve(case: Case, steps: int) -> Found:
 
 
 class _Model:
-    """An exudyn system. connections, drive: sensors of the forces on the first marker's body."""
+    """An exudyn system.
+
+    connections, drive: sensors of the forces on the body of the first marker.
+    """
 
     def __init__(self, case: Case, spring: float) -> None:
         self.case, linkage = case, case.linkage
@@ -65,7 +70,7 @@ class _Model:
             self._add_turn(turn)
 
     def stored(self, sensor: int) -> Floats:
-        """Rows (T, ...) of a sensor at the instants of the case."""
+        """Return the rows (T, ...) of a sensor at the instants of the case."""
         rows = np.asarray(self.system.GetSensorStoredData(sensor))
         chosen = [int(np.abs(rows[:, 0] - t).argmin()) for t in self.case.times]
         np.testing.assert_allclose(rows[chosen, 0], self.case.times)
@@ -108,7 +113,7 @@ class _Model:
         )
 
     def _add_slider(self, slider: Slider) -> None:
-        """A joint whose first axis is the slider's: free, or moved by the drive."""
+        """Add a joint whose first axis is that of the slider: free, or moved by the drive."""
         x, y = slider.axis
         markers = []
         for body, at in ((slider.base, slider.start), (slider.moving, slider.end)):
@@ -138,7 +143,7 @@ class _Model:
             self.drive = sensor
 
     def _add_turn(self, turn: Turn) -> None:
-        """A constraint on the bodies' angles, if a drive moves it."""
+        """Add a constraint on the angles of the bodies if a drive moves them."""
         if turn.name not in self.case.linkage.driven:
             return
         ground = self.system.AddNode(item.NodePointGround())
@@ -160,7 +165,7 @@ class _Model:
         )
 
     def _force(self, connector: object, kind: object) -> int:
-        """Add a connector; the sensor of its force."""
+        """Add a connector; return the sensor of its force."""
         number = self.system.AddObject(connector)
         return int(
             self.system.AddSensor(

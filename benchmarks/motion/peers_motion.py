@@ -1,8 +1,8 @@
-"""Our reactions beside those of exudyn and MuJoCo, two codes that share nothing with ours.
+"""Our reactions compared with those of exudyn and MuJoCo, two codes that share nothing with ours.
 
-Ours solves the loop equations at each instant; they integrate every body and constraint in time.
-Their errors fall with the square of their step (exudyn's time step, MuJoCo's time constant): two
-steps can be extrapolated to none.
+Our code solves the loop equations at each instant; the others integrate every body and constraint
+in time. Their errors decrease with the square of their step (exudyn's time step, MuJoCo's time
+constant), so that results of two steps can be extrapolated to a step of zero.
 """
 
 from __future__ import annotations
@@ -24,13 +24,17 @@ MISSING = (
     ".venv/bin/pip install --require-hashes -r requirements-bench.lock"
 )
 
-STAGES = (2, 6)  # of scissor lifts
+STAGES = (2, 6)  # of the scissor lifts
 
-Quantities = dict[str, Floats]  # (T, 2) of each connection, sums where they share, (T, 1) the drive
+Quantities = dict[
+    str, Floats
+]  # (T, 2) of connections, or of sums of those that share; (T, 1) drive
 
 
 def peers_motion() -> str:
-    """All reactions and drives of the landing gear and of a four-bar, by three codes."""
+    """Return the tables of reactions and drives of the landing gear, a four-bar and a scissor lift,
+    by three codes.
+    """
     try:
         from benchmarks.motion.peers_exudyn import EXUDYN
         from benchmarks.motion.peers_mujoco import MUJOCO
@@ -48,7 +52,9 @@ def _lift(stages: int) -> Case:
 
 
 def _cost(cases: list[Case], codes: tuple[Code, ...]) -> str:
-    """Times by the number of bodies; the other codes with the fewest of their steps."""
+    """Return the table of times by the number of bodies; the other codes take the fewest of their
+    steps.
+    """
     rows: list[tuple[object, ...]] = []
     for case in cases:
         reference, count = _quantities(case, ours(case)), len(case.linkage.bodies)
@@ -66,7 +72,7 @@ def _cost(cases: list[Case], codes: tuple[Code, ...]) -> str:
 
 
 def _compared(case: Case, codes: tuple[Code, ...]) -> str:
-    """The tables of one case."""
+    """Return the tables of one case."""
     reference = _quantities(case, ours(case))
     finest: list[Quantities] = []
     steps: list[tuple[object, ...]] = []
@@ -104,7 +110,9 @@ def _compared(case: Case, codes: tuple[Code, ...]) -> str:
 
 
 def _quantities(case: Case, found: Found, shares: bool = True) -> Quantities:
-    """What is compared; without `shares` only what statics determines."""
+    """Return the quantities that are compared; without `shares` only those that statics
+    determines.
+    """
     forces = {c.name: found.forces[:, i] for i, (_, c) in enumerate(case.linkage.connections)}
     shared = mobility(case.linkage).shared
     out = {name: force for name, force in forces.items() if shares or name not in shared}

@@ -1,10 +1,11 @@
 """The linkage in MuJoCo: every body moves freely in the plane, every connection is a constraint.
 
-MuJoCo gives accelerations and constraint forces of a state (mj_forward); scipy integrates them in
-time. MuJoCo's constraints are critically damped springs in effect: the motion lags by what their
-time constant makes of it, and the forces' error falls with its square. Its own integrators would
-hold the drive still within a step, which costs more. Where connections share, its own rule spreads
-the force over all of them, so that only their sums compare.
+MuJoCo gives the accelerations and constraint forces of a state (mj_forward); scipy integrates them
+in time. In effect, MuJoCo's constraints are critically damped springs: the motion lags by an amount
+that depends on their time constant, and the error of the forces decreases with its square. MuJoCo's
+own integrators would hold the drive still within a step, which costs more accuracy. Where
+connections share a force, MuJoCo's own rule distributes it over all of them, so that only their
+sums can be compared.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from loads import GROUND, Body, Linkage, Turn
 from loads.linkage.parts import Point
 from pinbase.arrays import Floats
 
-HARDNESS = 0.9999  # the most that MuJoCo allows
+HARDNESS = 0.9999  # the largest that MuJoCo allows
 
 
 def solve(case: Case, steps: int) -> Found:
-    """Forces and drive; constraints with `steps` time constants from one instant to the next."""
+    """Return forces and drive; `steps` time constants of the constraints fit between two
+    instants.
+    """
     constant = case.times[0] / steps
     model = _model(case.linkage, constant)
     data = mujoco.MjData(model)
@@ -32,7 +35,7 @@ def solve(case: Case, steps: int) -> Found:
 
     def forward(time: float, state: Floats) -> Floats:
         value, rate, second = case.drive(time)
-        # What the constraint's spring and damper need to follow a drive that moves.
+        # The target at which the constraint's spring and damper follow a moving drive.
         model.eq_data[drive, 0] = value + 2.0 * constant * rate + constant**2 * second
         data.qpos[:], data.qvel[:] = state[:count], state[count:]
         mujoco.mj_forward(model, data)
@@ -52,13 +55,13 @@ def solve(case: Case, steps: int) -> Found:
         forward(time, state)
         rows.append(data.efc_force.copy())
     found = np.array(rows)
-    # Three rows for each connection, the third (out of the plane) is idle; the last row drives.
+    # Each connection has three rows, the third (out of the plane) idle; the last row is the drive.
     on_body = found[:, :-1].reshape(len(rows), -1, 3)[..., :2]
     return Found(-on_body, found[:, -1])
 
 
 def _model(linkage: Linkage, constant: float) -> Any:
-    """The compiled model, with the drawn position at zero."""
+    """Return the compiled model, whose coordinates are zero in the drawn position."""
     spec = mujoco.MjSpec()
     spec.option.gravity = [*linkage.gravity, 0.0]
     spec.option.tolerance = 0.0
@@ -95,7 +98,9 @@ def _model(linkage: Linkage, constant: float) -> Any:
 
 
 def _add_body(linkage: Linkage, item: Body, bodies: dict[str, Any]) -> None:
-    """A body on the ground with two or three joints, or on the base along which it slides."""
+    """Add a body that moves freely on the ground (without rotation for a particle), or slides on
+    its base.
+    """
     if item.name in bodies:
         return
     slider = next((s for s in linkage.sliders if s.moving == item.name), None)

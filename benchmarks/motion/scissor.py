@@ -1,4 +1,6 @@
-"""Cost of motion, forces and their maxima by the number of bodies: scissor lifts of many stages."""
+"""The cost of motion, forces and their maxima by the number of bodies: scissor lifts of many
+stages.
+"""
 
 from __future__ import annotations
 
@@ -23,12 +25,12 @@ from loads import (
 from loads.linkage.parts import Point
 
 BAR = 2.0  # m
-LOW, HIGH, SPAN = 1.9, 1.3, 4.0  # distances of the feet, m, in what time, s
-CASES = ((2, 20_000), (10, 20_000), (50, 20_000))  # stages (2 bodies each, and 3), instants
+LOW, HIGH, SPAN = 1.9, 1.3, 4.0  # first and last distance of the feet, m; duration, s
+CASES = ((2, 20_000), (10, 20_000), (50, 20_000))  # stages, instants
 
 
 def lift(stages: int) -> Linkage:
-    """A scissor lift with 2 stages + 3 bodies, driven at its sliding foot."""
+    """Return a scissor lift with 2 stages + 3 bodies, driven at its sliding foot."""
     height = float(np.sqrt(BAR**2 - LOW**2))
 
     def at(x: float, level: float) -> Point:
@@ -56,7 +58,7 @@ def lift(stages: int) -> Linkage:
 
 
 def scissor() -> str:
-    """Times per instant of course, motion, forces, maxima; largest memory."""
+    """Return the times of path, motion and forces, and maxima, and the largest memory."""
     head = ("bodies", "instants", "path, s", "motion and forces, s", "ms an instant", "maxima, s")
     rows = [_row(*case) for case in CASES]
     return table((*head, "memory, MB"), rows)

@@ -1,4 +1,6 @@
-"""Accuracy of the solid model's peak in a fillet, compared with that of a much finer section."""
+"""The accuracy of the solid model's maximum in a fillet, compared with that of a much finer
+section.
+"""
 
 from __future__ import annotations
 
@@ -20,26 +22,26 @@ from geometry.mesh.solid_mesh import MeshSize, solid_mesh
 PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fillet=0.004)
 STEEL = Material("steel", 2.0e11, 0.3)
 LOAD = PinLoads("bending", ("B",), np.array([[[0.0, 1000.0, 0.0]]]))
-FILLET = (0.02, 0.024)  # z, m: from the shoulder to the tangent
+FILLET = (0.02, 0.024)  # z of the fillet, m, from the shoulder to the tangent
 FINEST = SectionSize(24.0, 50.0, 0.08)
 STEP, MESHES = 2.0**0.5, 4
 
 
 def truth() -> float:
-    """Largest von Mises stress in the fillet, Pa."""
+    """Return the largest von Mises stress in the fillet on a much finer section, Pa."""
     model = HarmonicModel(PIN, meridian_mesh(PIN, FINEST), STEEL, ("start",))
     return peak(model.solve(tuple(LOAD.coefficients())))
 
 
 def peak(fields: MeridianFields) -> float:
-    """Largest von Mises stress in the fillet, Pa."""
+    """Return the largest von Mises stress in the fillet, Pa."""
     r, z = fields.points.T
     near = (z >= FILLET[0]) & (z <= FILLET[1]) & (r >= PIN.segments[1].diameter / 2.0 * (1 - 1e-9))
     return Circumference(fields, LOAD).top(near).value
 
 
 def fillet() -> str:
-    """A shoulder fillet in bending, meshed finer and finer."""
+    """Return the table of a shoulder fillet in bending on ever finer meshes."""
     steps: list[Refinement] = []
     for level in range(MESHES):
         mesh = solid_mesh(PIN, MeshSize(across=3.0, arc=1.5).finer(STEP**level), (0.02, 0.06))

@@ -1,5 +1,7 @@
-"""The limit load in CalculiX: the same hexahedra, C3D20R, the same supports and forces, which rise
-until it finds no equilibrium; the load factor that it reached is a lower bound of that mesh.
+"""The limit load by CalculiX on the same hexahedra (C3D20R), with the same supports and forces.
+
+The forces increase until CalculiX finds no equilibrium; the load factor that it reached is a lower
+bound for this mesh.
 """
 
 from __future__ import annotations
@@ -17,14 +19,15 @@ from fea.core.material import Material
 from geometry.mesh.hexahedra import twenty
 from pinbase.arrays import Floats
 
-MIN_INCREMENT = 1e-3  # increment of the loads, of the largest
+MIN_INCREMENT = 1e-3  # increment of the loads over the largest loads
 MAX_INCREMENT = 0.04
 
 
 def factor_reached(pin: PinBody, most: float, folder: Path) -> float:
-    """The load factor that CalculiX reaches on its way to `most`, to a thousandth of that.
+    """Return the load factor that CalculiX reaches on its way to `most`, accurate to a thousandth
+    of `most`.
 
-    Raises: CalculixError when it converges in no increment.
+    Raises: CalculixError if no increment converges.
     """
     _write(pin, most, folder / f"{JOB_NAME}.inp")
     done, status = attempt(folder), folder / f"{JOB_NAME}.sta"
@@ -58,7 +61,9 @@ def _write(pin: PinBody, most: float, path: Path) -> None:
 
 
 def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
-    """With a line for each 16 numbers of an element, and without the section."""
+    """Yield the lines of the mesh without the section; lines with more than 16 numbers
+    are divided.
+    """
     for line in mesh_lines("C3D20R", pin.mesh.nodes, pin.mesh.elements[:, twenty()], material):
         if line.startswith("*SOLID SECTION"):
             continue
@@ -70,7 +75,9 @@ def _mesh(pin: PinBody, material: Material) -> Iterator[str]:
 
 
 def _supports(ties: Ties) -> Iterator[str]:
-    """Zero components, and those that are plus or minus others."""
+    """Yield the zero components, and the equations between components that are equal or
+    opposite.
+    """
     yield "*BOUNDARY"
     for node, axis in zip(*divmod(np.flatnonzero(ties.unknown < 0), 3), strict=True):
         yield f"{node + 1}, {axis + 1}"
@@ -81,7 +88,7 @@ def _supports(ties: Ties) -> Iterator[str]:
 
 
 def _pairs(ties: Ties) -> Iterator[tuple[int, int]]:
-    """Components tied to another, and that."""
+    """Yield each component that is tied to another, with the other one."""
     first = ties.first
     for component in np.flatnonzero(ties.unknown >= 0).tolist():
         if (other := int(first[ties.unknown[component]])) != component:

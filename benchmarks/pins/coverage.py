@@ -1,7 +1,8 @@
-"""Does the estimated error contain the true one, and are sharp corners distinguished from fillets?
+"""Tests whether the estimated error contains the true one, and whether sharp corners are
+distinguished from fillets.
 
-The truth is the same model on a mesh of four times the unknowns, with more harmonics of a
-bearing pressure.
+The true value is that of the same model on a mesh of four times the unknowns, with more harmonics
+of a bearing pressure.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ from fea.support.support import Solution
 Row = dict[str, Any]
 
 PINS, CORNERS = 50, 20
-BEYOND = 2  # meshes finer than the one that answered
-TERMS = 10  # harmonics of a bearing pressure in the truth
+BEYOND = 2  # refinements beyond the last mesh of the solution
+TERMS = 10  # harmonics of a bearing pressure for the true value
 
 
 def solved(trial: Trial, tolerance: float = 0.02) -> Solution:
-    """By the ladder."""
+    """Return the solution with the program's own choice of model."""
     (found,) = solve_pin(
         trial.pin, STEEL, trial.clamps, (trial.loads,), Requirement(tolerance, required=1.0)
     )
@@ -37,7 +38,9 @@ def solved(trial: Trial, tolerance: float = 0.02) -> Solution:
 
 
 def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = BEYOND) -> float:
-    """Maximum outside the excluded zones on a mesh, `beyond` the last of `meshes`, Pa."""
+    """Return the maximum outside the excluded zones, Pa, on the mesh that is `beyond` the last of
+    `meshes`.
+    """
     singularities = singularities_of(trial.pin, material, trial.clamps, (trial.loads,))
     constrained = tuple(trial.pin.surface(c) for c in trial.clamps)
     level = meshes - 1 + beyond
@@ -48,7 +51,7 @@ def truth(trial: Trial, meshes: int, material: Material = STEEL, beyond: int = B
 
 
 def coverage(count: int = PINS, seed: int = 4, tolerance: float = 0.02) -> Iterator[Row]:
-    """A row per pin: estimate and true error over the maximum, verdict, unknowns."""
+    """Yield a row for each pin: estimated and true error over the maximum, verdict, unknowns."""
     for trial in trials(count, seed):
         peak = solved(trial, tolerance).peak
         value, error = peak.max_von_mises or 0.0, peak.error_estimate or 0.0
@@ -64,7 +67,9 @@ def coverage(count: int = PINS, seed: int = 4, tolerance: float = 0.02) -> Itera
 
 
 def corners(count: int = CORNERS, seed: int = 5) -> list[Row]:
-    """Sharp and filleted pins: verdicts, and exponents of sharp corners that govern."""
+    """Return rows of sharp and filleted pins: verdicts, and the zones of sharp corners
+    that govern.
+    """
     rows: list[Row] = []
     for sharp in (True, False):
         for trial in trials(count, seed, None if sharp else (0.04, 0.2)):
@@ -83,7 +88,7 @@ def corners(count: int = CORNERS, seed: int = 5) -> list[Row]:
 
 
 def contained() -> str:
-    """The estimate compared with the true error, pin by pin."""
+    """Return the comparison of estimated and true errors, pin by pin."""
     rows = list(coverage())
     lines = (
         (
@@ -102,7 +107,9 @@ def contained() -> str:
 
 
 def singular() -> str:
-    """Sharp corners found, their exponents, and fillets mistaken for corners."""
+    """Return the numbers of detected sharp corners and of fillets mistaken for corners, and the
+    exponents.
+    """
     rows = corners()
     zones = [zone for row in rows if row["sharp"] for zone in row["governs"]]
     off = [abs(z.exponent - z.exponent_theory) for z in zones if z.exponent is not None]

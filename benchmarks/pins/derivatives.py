@@ -1,4 +1,6 @@
-"""Derivatives of the largest stress: their price beside the solution, and how right they are."""
+"""Derivatives of the largest stress: their cost compared with that of the solution, and their
+accuracy.
+"""
 
 from __future__ import annotations
 
@@ -31,12 +33,12 @@ from pinbase.arrays import Floats
 
 T = TypeVar("T")
 PINS = 10
-STEP = 1e-3  # of a dimension, for differences
-FINE = 0.005  # tolerance of meshes that are taken for true
+STEP = 1e-3  # of the differences, over the dimension
+FINE = 0.005  # tolerance of the meshes that give the true values
 
 
 def price() -> str:
-    """Price and errors of random pins with fillets."""
+    """Return the cost and the errors for random pins with fillets."""
     rows = [_row(trial) for trial in trials(PINS, seed=22)]
     head = (
         "pin",
@@ -86,7 +88,7 @@ def _apart(ours: Derivatives, fine: Derivatives, every: list[Dimension]) -> floa
 
 
 def timed(work: Callable[[], T]) -> tuple[T, float]:
-    """With its processor time, s."""
+    """Return the result of `work` and its processor time, s."""
     start = time.process_time()
     made = work()
     return made, time.process_time() - start
@@ -102,7 +104,9 @@ def _solved(trial: Trial, requirement: Requirement) -> SolvedCase:
 
 
 def velocities(of: SolvedCase) -> tuple[list[Dimension], Floats]:
-    """(N, 2, P) of the mesh with each dimension."""
+    """Return the dimensions, and the velocities (N, 2, P) of the nodes of the mesh with each of
+    them.
+    """
     reaches = [Reach((p.r, p.z), p.radius) for p in of.zones]
     nodes = OutlineNodes(of.solution.mesh, of.pin, reaches)
     every = list(dimensions(of.pin))
@@ -118,8 +122,11 @@ def moved_maximum(
     loads: PinLoads | None = None,
     point: int | None = None,
 ) -> float:
-    """The stress at the governing point, or another one by its number, on the same mesh with its
-    nodes moved (N, 2), all of it found anew; under other loads than before, if any.
+    """Return the stress, Pa, at the governing point, or at another one by its number, on the moved
+    mesh.
+
+    moved: displacements of the nodes (N, 2); everything is solved again.
+    loads: other loads than those of the case, if any.
     """
     loads = loads or of.loads
     mesh = of.solution.mesh
@@ -137,7 +144,7 @@ def moved_maximum(
 
 
 def by_differences(of: SolvedCase, some: slice = slice(None)) -> dict[str, float]:
-    """Derivatives of that by some of the dimensions, Pa/m."""
+    """Return the derivatives of this stress by some of the dimensions, Pa/m."""
     every, velocity = velocities(of)
     out = {}
     for k in range(len(every))[some]:
@@ -152,7 +159,9 @@ def by_differences(of: SolvedCase, some: slice = slice(None)) -> dict[str, float
 
 
 def richardson(at: Callable[[float], float], step: float) -> float:
-    """Derivative at 0 by central differences with a step and with half of it."""
+    """Return the derivative at 0 by central differences with a step and with half of it,
+    extrapolated.
+    """
 
     def central(h: float) -> float:
         return (at(h) - at(-h)) / (2.0 * h)

@@ -1,4 +1,4 @@
-"""How costs grow with the number of unknowns, stage by stage: fitted powers."""
+"""The growth of costs with the number of unknowns, stage by stage: fitted powers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ RUNS = 2
 
 
 def growth() -> str:
-    """Seconds of the smallest and the largest mesh, and the powers."""
+    """Return the table of times of the smallest and the largest mesh, s, and the powers."""
     rows = [
         *_rows("harmonic", ("meshing", "solving one harmonic", "maximum"), [
             partial(_harmonic, SECTION.finer(f)) for f in SECTIONS

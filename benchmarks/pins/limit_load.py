@@ -40,7 +40,7 @@ HEAD = (
 
 @dataclass(frozen=True)
 class Problem:
-    """loads: of which `exact` is the limit load factor, None where it is not known."""
+    """A pin with loads. exact: the limit load factor of these loads; None where it is not known."""
 
     name: str
     pin: Pin
@@ -50,7 +50,9 @@ class Problem:
 
 
 def limit_load() -> str:
-    """The table; factors over the exact one, or that which the first mesh reached."""
+    """Return the table; factors are over the exact one, or without one over that reached on the
+    first mesh.
+    """
     rows: list[tuple[str, ...]] = []
     for problem in _problems():
         one = problem.exact
@@ -97,7 +99,7 @@ def _couples(axis: int) -> PinLoads:
 
 
 def _calculix(made: PinBody, found: MeshBracket) -> tuple[float, float]:
-    """Its load factor, and its run time in s."""
+    """Return CalculiX's load factor and its wall time, s."""
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         factor = factor_reached(made, 1.05 * found.reached, Path(folder))

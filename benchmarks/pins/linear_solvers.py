@@ -1,7 +1,7 @@
-"""Linear solvers on the solid model's matrix: time and memory of factoring and two solves.
+"""Linear solvers on the solid model's matrix: time and memory of factorising and of two solves.
 
-Every point is a process of its own, which reads the matrix from a file; memory is what it takes
-above that. A point past the limits is shown with the reason.
+Every point is measured in a process of its own, which reads the matrix from a file; the memory is
+that above the matrix. A point beyond the limits is shown with the reason.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ from pinbase.arrays import Floats
 from reports.format.numbers import engineering
 
 Ints = NDArray[np.int64]
-Point = tuple[float, float] | str  # s and MB, or what was wrong
+Point = tuple[float, float] | str  # s and MB, or the reason of a failure
 
 ACROSS = (6.3, 8.0, 11.0, 18.0)  # elements over the shaft
 SECONDS, GIGABYTES, ABREAST = 120.0, 12.0, 2
-PATIENCE = SECONDS + 10.0  # with the start of a process and the reading of the matrix
+PATIENCE = SECONDS + 10.0  # includes the start of a process and the reading of the matrix
 OVER = f"over {SECONDS:.0f} s"
 NAMES = {
     "cholmod": "CHOLMOD, nested dissection",
@@ -44,7 +44,9 @@ _RIGHT_HAND_SIDES = 2
 
 
 def linear_solvers() -> str:
-    """Seconds and megabytes by unknowns, and the powers of the unknowns with which they grow."""
+    """Return the table of times and memories by unknowns, and of the powers with which
+    they grow.
+    """
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(ABREAST) as pool:
         files = [Path(folder) / f"{across:g}.npz" for across in ACROSS]
         counts = list(pool.map(_matrix_file, ACROSS, files))
@@ -66,12 +68,12 @@ def linear_solvers() -> str:
 
 
 def _matrix_file(across: float, file: Path) -> int:
-    """Unknowns of the matrix that is written."""
+    """Write a matrix; return its number of unknowns."""
     return int(_child("matrix", str(across), str(file))["unknowns"])
 
 
 def _row(counts: list[int], files: list[Path], name: str) -> list[Point]:
-    """Of one solver, from the smallest matrix on."""
+    """Return the points of one solver, from the smallest matrix to the largest."""
     row: list[Point] = []
     for file in files:
         row.append(OVER if _hopeless(counts, row) else _point(name, file))
@@ -79,7 +81,9 @@ def _row(counts: list[int], files: list[Path], name: str) -> list[Point]:
 
 
 def _hopeless(counts: list[int], row: list[Point]) -> bool:
-    """Whether a smaller size was over the limit, or the last two predict half as much again."""
+    """Return whether a smaller matrix was over the limit, or the last two points predict half as
+    much again.
+    """
     if OVER in row:
         return True
     if len(row) < 2 or any(isinstance(point, str) for point in row):
@@ -121,7 +125,9 @@ def _child(*arguments: str) -> dict[str, float]:
 
 
 def _matrix(across: float, file: Path) -> dict[str, float]:
-    """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns."""
+    """Write the matrix of a cantilever with a fillet, and the nodes of its unknowns; return the
+    number of unknowns.
+    """
     from benchmarks.runs.speed import PIN, STEEL
     from fea.solid.assembly import Discretisation
     from fea.solid.boundary import clamped_nodes
@@ -144,7 +150,7 @@ def _solve(name: str, file: Path) -> dict[str, float]:
     b = np.random.default_rng(0).standard_normal((len(free), _RIGHT_HAND_SIDES))
     factor = SOLVERS[name](K, free, nodes)
     before = _memory("VmRSS")
-    Path("/proc/self/clear_refs").write_text("5")  # the largest so far starts anew
+    Path("/proc/self/clear_refs").write_text("5")  # resets the peak memory
     start = time.perf_counter()
     x = factor()(b)
     spent = time.perf_counter() - start
@@ -156,7 +162,7 @@ def _solve(name: str, file: Path) -> dict[str, float]:
 
 
 def _memory(key: str) -> float:
-    """Of this process, MB, as Linux tells it."""
+    """Return the memory of this process, MB, from Linux's status file."""
     status = Path("/proc/self/status").read_text()
     return float(re.findall(rf"{key}:\s*(\d+)", status)[0]) / 1024.0
 

@@ -1,5 +1,5 @@
-"""What choices of the model are worth, on the floating pins of the landing gear with fillets:
-their supports, how links press on them, Fourier terms of that pressure, instants of the motion.
+"""The effect of modelling choices on the floating pins of the landing gear with fillets: supports,
+distribution of the pressure of links, Fourier terms of this pressure, instants of the motion.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from pinstress.study.model.tasks import Task
 
 STUDY = ROOT / "studies" / "landing_gear.toml"
 CASE = "retract"
-PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # bands clamped there
+PUBLISHED = {"C": "C2", "E": "E1", "F": "F1", "G": "G3", "J": "J3"}  # published clamped bands
 TERMS = (1, 2, 4, 6, 8, 10, 12)
 TRUE_TERMS = 20
-LEVEL = 2  # of the mesh for what is compared on one mesh
+LEVEL = 2  # of the mesh, for comparisons on one mesh
 INSTANTS = (6, 11, 21, 51, 101, 201)
 TRUE_INSTANTS = 4001
 
@@ -45,7 +45,9 @@ def _gear() -> tuple[dict[str, Task], CaseLoads, Material]:
 
 
 def holding() -> str:
-    """Maxima of the same pin and forces, by how the pin is held and how the links press."""
+    """Return the table of maxima of the same pin under the same forces, by its support and the
+    distribution of the links' pressure.
+    """
     found, _, steel = _gear()
     rows = []
     for name, band in PUBLISHED.items():
@@ -73,7 +75,7 @@ def holding() -> str:
 
 
 def terms() -> str:
-    """Maxima by the highest harmonic of the bearing pressure, on one mesh."""
+    """Return the table of maxima by the highest harmonic of the bearing pressure, on one mesh."""
     found, _, steel = _gear()
     rows = []
     for name, task in found.items():
@@ -92,7 +94,9 @@ def terms() -> str:
 
 
 def instants() -> str:
-    """Error of the maximum over the motion by the number of even instants at which it is read."""
+    """Return the table of the error of the maximum over the motion, by the number of evenly spaced
+    instants.
+    """
     found, given, steel = _gear()
     assert given.reactions.times is not None
     start, end = given.reactions.times[[0, -1]]

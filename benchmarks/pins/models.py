@@ -1,4 +1,4 @@
-"""Beam, harmonic and solid model on three pins of different kind: cost of an error of 1 %."""
+"""Beam, harmonic and solid model for three different pins: the cost of an error of 1 %."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ PINS = (
 )
 DRAWN = 1
 TOLERANCE, MESHES, RUNS = 0.01, 4, 5
-NEAR = 4.0  # times more or less than the tolerance is about it
+NEAR = 4.0  # errors within this factor of the tolerance are near it
 LIMITS = MeasureLimits(seconds=300.0, memory=8000.0)
-LARGEST = 140_000  # unknowns: no finer mesh of the solid is tried after one that has so many
+LARGEST = 140_000  # unknowns; no finer mesh of the solid is tried beyond this
 
 
 def models() -> str:
-    """The table; draws the chart of the second pin in docs/images."""
+    """Return the table; draw the chart of the second pin in docs/images."""
     rows = []
     for k, (study, pin, case) in enumerate(PINS):
         plan = plan_chart(load_study(ROOT / "studies" / study), pin, case, TOLERANCE)
@@ -52,13 +52,16 @@ def models() -> str:
 
 
 def _measured(job: MeasureJob) -> Measured:
-    """The median of a few runs; of a solid, which takes seconds, one will do."""
+    """Return the median of a few runs; a solid, which takes seconds, is run once."""
     return measure(replace(job, runs=1) if job.rung.model == "solid" else job, LIMITS)
 
 
 def _noted(jobs: dict[int, MeasureJob], drawn: bool, job: MeasureJob) -> Measured:
-    """Measured, and added by its unknowns to the jobs if it is a harmonic mesh that is charted. All
-    that is drawn is measured as often as the chart says.
+    """Return the measurement of a mesh; a charted harmonic mesh is added to the jobs by its
+    unknowns.
+
+    drawn: whether the pin's chart is drawn; then all meshes are measured as often as the chart
+    states.
     """
     rung = job.rung
     if rung.model == "solid" and rung.element != "curved" and not drawn:
@@ -70,8 +73,10 @@ def _noted(jobs: dict[int, MeasureJob], drawn: bool, job: MeasureJob) -> Measure
 
 
 def _once_more(found: Chart, jobs: dict[int, MeasureJob]) -> Chart:
-    """With the harmonic meshes of about that error measured once more after the solids, which take
-    minutes, and the mean of both: other work on the machine is not the same all the time.
+    """Return the chart with the mean of two measurements of the harmonic meshes near the tolerance.
+
+    They are measured again after the solids, which take minutes, since other work on the machine
+    varies.
     """
     points = [
         replace(p, seconds=((p.seconds or 0.0) + _measured(jobs[p.dofs]).seconds) / 2.0)
@@ -85,8 +90,8 @@ def _once_more(found: Chart, jobs: dict[int, MeasureJob]) -> Chart:
 
 
 def _further(plan: ChartPlan, found: Chart) -> list[ChartPoint]:
-    """Curved solid elements on finer meshes than are charted, once each, until the error is reached
-    or they become too large.
+    """Return curved solid elements on finer meshes than those of the chart, each measured once,
+    until they reach the error or become too large.
     """
     stress, level = plan.study.system.factor("stress"), FIRST_SOLID_LEVEL["curved"] + MESHES
     points = [p for p in found.points if p.element == ELEMENT_NAMES["curved"] and not p.failed]

@@ -1,5 +1,5 @@
-"""The critical plane by our search, beside all planes and directions of a grid of 2 degrees, of
-random histories of stress; and what either takes.
+"""The critical plane by our search, compared with all planes and directions of a grid of 2 degrees,
+for random stress histories; and the times of both.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ K = findley_k(0.25)
 
 
 def planes() -> str:
-    """The table."""
+    """Return the table."""
     rng = np.random.default_rng(34)
     return table(HEAD, (_row(kind, rng) for kind in KINDS for _ in range(2)))
 

@@ -1,4 +1,6 @@
-"""CAD shafts with recesses, of which no cut is known: solid about these alone, and as a whole."""
+"""CAD shafts with recesses that are of no known kind of cut: solid about the recess only, and as a
+whole.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,7 @@ TOOLS: dict[str, Tool] = {
 
 
 def recesses() -> str:
-    """The table."""
+    """Return the table."""
     rows = []
     for name, tool in TOOLS.items():
         with tempfile.TemporaryDirectory() as made:

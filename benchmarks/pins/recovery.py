@@ -1,4 +1,6 @@
-"""Ways to find the stress at a fillet from the same displacements: error of the peak by mesh."""
+"""Methods of stress recovery at a fillet from the same displacements: errors of the maximum by
+mesh.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,7 @@ SOLID = MeshSize(across=3.0, arc=1.5)
 
 
 def recovery() -> str:
-    """Errors of the largest von Mises stress in the fillet, %."""
+    """Return the table of errors of the largest von Mises stress in the fillet, %."""
     true = truth()
 
     def row(model: str, unknowns: int, *peaks: float | None) -> tuple[object, ...]:
@@ -51,7 +53,9 @@ def recovery() -> str:
 
 
 def _section(size: SectionSize) -> tuple[int, float, float, float]:
-    """Unknowns, and peaks by averages, by fits and as the harmonic model has it on the skin, Pa."""
+    """Return unknowns and maxima, Pa: by averages, by fits, and by the harmonic model's own values
+    on the skin.
+    """
     (load,) = LOAD.coefficients()
     model = HarmonicModel(PIN, meridian_mesh(PIN, size), STEEL, ("start",))
     fields = model.solve((load,))
@@ -75,7 +79,7 @@ def _section(size: SectionSize) -> tuple[int, float, float, float]:
 
 
 def _solid(size: MeshSize) -> tuple[int, float, float]:
-    """Unknowns and peaks by averages and with the known traction, Pa."""
+    """Return unknowns and maxima, Pa: by averages, and with the known traction."""
     mesh = solid_mesh(PIN, size, (PIN.stations[1], PIN.length))
     model = SolidModel(PIN, mesh, STEEL, ("start",))
     fields = model.solve(acting([LOAD]))

@@ -1,4 +1,6 @@
-"""Turned bodies as a profile, from CAD, and as solids: whole commands, one after the other."""
+"""Turned bodies given as a profile, as CAD, and solved as solids: times of whole commands, one by
+one.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +44,7 @@ RUNS = 3
 
 
 def shapes() -> str:
-    """The table."""
+    """Return the table."""
     rows = []
     for name, middle in SHAPES.items():
         pin = Pin("P", (Segment(25.0, 30.0), *middle, Segment(30.0, 20.0)))

@@ -1,5 +1,5 @@
-"""Shoulder fillets: peaks of the harmonic model compared with a far finer mesh and
-Peterson's charts, and how long they take.
+"""Shoulder fillets: maxima of the harmonic model compared with a much finer mesh and with
+Peterson's charts, and their times.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ SHAPES = (
 )  # D/d, r/d
 KINDS = ("bending", "tension", "torsion")
 CHARTS = (BENDING_FIT, TENSION_FIT, TORSION_FIT)
-QUICK = SectionSize(2.8, 5.6, 0.6)  # for 1 %
-GOOD = SectionSize(6.0, 14.0, 0.3)  # for 0.3 %
+QUICK = SectionSize(2.8, 5.6, 0.6)  # error of 1 %
+GOOD = SectionSize(6.0, 14.0, 0.3)  # error of 0.3 %
 FINEST = SectionSize(20.0, 44.0, 0.1)  # ten times the unknowns of GOOD
 RUNS = 3
 AWAY = 1.5  # diameters from the loaded band to the shoulder
@@ -46,8 +46,10 @@ AWAY = 1.5  # diameters from the loaded band to the shoulder
 
 @dataclass(frozen=True)
 class Run:
-    """Peaks at the fillet over the nominal stress of the thin shaft, by kind of load: von Mises and
-    first principal; unknowns and seconds, meshing included.
+    """The maxima at a fillet over the nominal stress of the thin shaft, by kind of load.
+
+    von_mises, principal: von Mises and first principal stress.
+    unknowns: of the mesh. seconds: time, meshing included.
     """
 
     von_mises: Floats
@@ -57,18 +59,20 @@ class Run:
 
 
 def shoulder(ratio: float, radius: float) -> Pin:
-    """A shaft of diameter D with a shoulder `ratio` times as thick, held at the far end."""
+    """Return a shaft of diameter D with a shoulder `ratio` times as thick and a fillet of `radius`
+    D.
+    """
     thin = Segment(AWAY * D, D)
     segments = (Segment(0.5 * D, D, connection="A"), thin, Segment(1.5 * ratio * D, ratio * D))
     return Pin("shoulder", segments, radius * D)
 
 
 def loads(kind: str) -> PinLoads:
-    """Unit nominal stress of a kind in the thin shaft."""
+    """Return loads of a kind that give unit nominal stress in the thin shaft."""
     area, modulus = np.pi * D**2 / 4.0, np.pi * D**3 / 32.0
     force, moment = np.zeros((1, 1, 3)), np.zeros((1, 1, 3))
     if kind == "tension":
-        force[0, 0, 2] = -area  # at the start, which pulls
+        force[0, 0, 2] = -area  # a pull at the start
     elif kind == "bending":
         moment[0, 0, 1] = modulus
     else:
@@ -77,7 +81,7 @@ def loads(kind: str) -> PinLoads:
 
 
 def run(pin: Pin, size: SectionSize, kinds: tuple[str, ...] = KINDS) -> Run:
-    """One mesh, all three kinds of load, or some."""
+    """Return the maxima on one mesh for all kinds of load, or some."""
     start = time.perf_counter()
     cases = [loads(kind) for kind in kinds]
     units = tuple(load for case in cases for load in case.coefficients())
@@ -101,8 +105,8 @@ def _peaks(pin: Pin, fields: MeridianFields, case: PinLoads) -> tuple[float, flo
 
 
 def shoulders() -> str:
-    """The table."""
-    run(shoulder(*SHAPES[0]), QUICK)  # libraries loaded
+    """Return the table."""
+    run(shoulder(*SHAPES[0]), QUICK)  # not timed: loads the libraries
     lines = []
     worst, quick_worst, times = 0.0, 0.0, []
     alone: list[float] = []

@@ -1,7 +1,9 @@
-"""Shoulder fillets in tension: our harmonic model beside CalculiX's axisymmetric elements (CAX6).
+"""Shoulder fillets in tension: our harmonic model compared with CalculiX's axisymmetric elements
+(CAX6).
 
-CalculiX gets the section's mesh and pulls at the end face; ours pulls at a band. The shoulder is
-too far away to tell the difference. Peterson's chart is far below both where the fillet is small.
+CalculiX solves the mesh of our section and pulls at the end face; our model pulls at a band. The
+shoulder is too far away for this to matter. Peterson's chart is far below both where the fillet is
+small.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from geometry.mesh.section_mesh import MeridianMesh, SectionSize, meridian_mesh
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SHAPES = ((1.25, 0.0125), (3.0, 0.1))  # D/d, r/d: where we are furthest from the chart, and at 3
+SHAPES = ((1.25, 0.0125), (3.0, 0.1))  # D/d, r/d; at the first we differ most from the chart
 TENSION = KINDS.index("tension")
 MIRRORED = [0, 2, 1, 5, 4, 3]  # CAX6: corners, then edges 01, 12, 20
 SIDES = ((0, 1), (1, 2), (2, 0))
@@ -42,8 +44,11 @@ HEAD = (
 
 @dataclass(frozen=True)
 class Tension:
-    """Of a fillet under unit nominal tension: ours (in column TENSION), and CalculiX's largest
-    principal and von Mises stress; chart: Peterson's factor.
+    """The maxima at a fillet under unit nominal tension.
+
+    ours: our results (in column TENSION).
+    principal, von_mises: CalculiX's largest principal and von Mises stress.
+    chart: Peterson's factor.
     """
 
     ours: Run
@@ -53,7 +58,7 @@ class Tension:
 
 
 def tension() -> str:
-    """The table."""
+    """Return the table."""
     if not installed():
         return MISSING
     rows = []
@@ -73,15 +78,19 @@ def tension() -> str:
 
 
 def factors(ratio: float, radius: float, size: SectionSize) -> Tension:
-    """Both on meshes of one size. Raises: CalculixError."""
+    """Return the maxima by both on meshes of one size.
+
+    Raises: CalculixError.
+    """
     pin = shoulder(ratio, radius)
     chart = shoulder_factor(CHARTS[TENSION], ratio * D, D, radius * D)
     return Tension(run(pin, size), *axisymmetric(pin, size), chart)
 
 
 def axisymmetric(pin: Pin, size: SectionSize) -> tuple[float, float]:
-    """CalculiX's largest principal and von Mises stress at the fillet, of a pull of 1 Pa at the
-    start face against the held end face.
+    """Return CalculiX's largest principal and von Mises stress at the fillet, Pa.
+
+    The start face is pulled by 1 Pa, the end face is held.
     """
     section = meridian_mesh(pin, size)
     space = Section(section)
@@ -116,7 +125,7 @@ def _deck(section: MeridianMesh, space: Section) -> Iterator[str]:
 
 
 def _turned(nodes: Floats, elements: Ints) -> Ints:
-    """Elements counter-clockwise."""
+    """Return the elements with their nodes in counter-clockwise order."""
     a, b, c = np.moveaxis(nodes[elements[:, :3], :2], 1, 0)
     first, second = b - a, c - a
     negative = first[:, 0] * second[:, 1] < first[:, 1] * second[:, 0]

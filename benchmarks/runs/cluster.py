@@ -1,5 +1,5 @@
-"""What a cluster costs: thousands of cheap designs by this process, and by the workers of an
-encrypted cluster on this machine.
+"""The overhead of a cluster: thousands of cheap designs solved by this process, and by the workers
+of an encrypted cluster on this machine.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.sweep import MemoryStore, planned, solved
 from tests.support.programs.dask_cluster import dask_cluster
 
-FORCES, STRENGTHS = 50, 100  # of which all pairs are designs
+FORCES, STRENGTHS = 50, 100  # every pair is a design
 DESIGNS = FORCES * STRENGTHS
 WORKERS, ROUNDS = 2, 3
-MAX_OVERHEAD = 5.0  # ms a design that are allowed
+MAX_OVERHEAD = 5.0  # allowed, ms for each design
 VARY = """
 [vary]
 sample = "grid"
@@ -30,7 +30,7 @@ sample = "grid"
 
 
 def cluster() -> str:
-    """The table: this process and the cluster in turn, each time other designs."""
+    """Return the table: this process and the cluster alternate, each round with other designs."""
     rows = []
     with tempfile.TemporaryDirectory() as folder, dask_cluster(Path(folder) / "c") as started:
         processes = [started.scheduler, *(started.worker() for _ in range(WORKERS))]
@@ -56,7 +56,7 @@ def cluster() -> str:
 
 
 def _study(number: int) -> Study:
-    """A study for a round, in which no force is that of another round."""
+    """Return the study of a round; no force occurs in another round."""
     text = shipped_studies()["one_pin"].read_text(encoding="utf-8")
     mean = -980 - number
     return study_from(text + VARY.format(mean=mean, forces=FORCES, strengths=STRENGTHS))
@@ -67,7 +67,7 @@ def _swept(study: Study, connection: ClusterConnection | None = None) -> None:
 
 
 def _spent(work: Callable[[], None], others: list[int]) -> tuple[float, float]:
-    """Wall time of a piece of work, and its processor time in this and in other processes, s."""
+    """Return the wall time of `work`, and the processor time of this and of other processes, s."""
     import psutil
 
     processes = [psutil.Process(), *map(psutil.Process, others)]

@@ -1,5 +1,5 @@
-"""The page of designs in Chromium: its size, until it can be used, and a frame while brushing; the
-same lines drawn by Vega, which the report has.
+"""The page of designs in Chromium: its size, the time until it can be used, and the time of a frame
+while brushing; and the same lines drawn by Vega, which the report contains.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 COUNTS = (1_000, 10_000, 100_000)
 BY_VEGA = 10_000
-PARAMETERS = 5  # and mass, stress and factor: 8 axes
+PARAMETERS = 5  # with mass, stress and factor 8 axes
 STEPS = 40
 STEPS_OF_VEGA = 8
 READY = "return performance.getEntriesByName('ready')[0]?.startTime;"
-# A range that moves up along the axis of the first column, once in every frame; of every step the
-# milliseconds of the scripts, and those from frame to frame.
+# A range moves up along the axis of the first column, one step in every frame. The script returns
+# for every step the time of the scripts, and that from frame to frame, ms.
 BRUSH = """
 const [steps, done] = arguments, scripts = [], frames = [], scale = page.now().values[0];
 let low = Infinity, high = -Infinity, k = 0, before = 0;
@@ -57,7 +57,7 @@ const [steps, done] = arguments;
 
 
 def designs_page() -> str:
-    """Size, times and frames of pages of few and of many designs."""
+    """Return the table of sizes, times and frames of pages of few and of many designs."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [_row(count, Path(folder) / f"{count}.html") for count in COUNTS]
         by_vega = _vega(made_up_designs(BY_VEGA, PARAMETERS), Path(folder) / "vega.html")
@@ -96,7 +96,7 @@ def _opened(path: Path) -> Chrome:
 
 
 def _processor(browser: Chrome) -> float:
-    """Seconds of processor time that the page's thread has taken."""
+    """Return the processor time of the page's thread, s."""
     told = browser.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
     return float(next(m["value"] for m in told if m["name"] == "TaskDuration"))
 
@@ -108,7 +108,9 @@ def _until(browser: Chrome) -> float:
 
 
 def _vega(designs: pa.Table, path: Path) -> float:
-    """Milliseconds a step: lines in a range are dark, the others light, as on the page."""
+    """Return the time of a step by Vega, ms; lines in a range are dark, the others light, as on the
+    page.
+    """
     found = designs_of(designs)
     columns = [c.values for c in found.parameters]
     columns += [c.values for c in found.results if c.key in ("mass", "max_von_mises")]

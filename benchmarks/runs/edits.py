@@ -1,7 +1,8 @@
-"""Edits of studies drawn at random, each asked of an engine at once, and some of them run anew.
+"""Edits of studies drawn at random, each solved by an engine at once, and some of them also by a
+run.
 
-An edit changes one number, on top of up to two changes before it, of a study that the engine knows
-in full. It then asks for the rows of the pin that it touches, or of any pin.
+An edit changes one number of a study that the engine has fully solved, on top of up to two earlier
+changes. It then requests the rows of the pin that it changes, or of any pin.
 """
 
 from __future__ import annotations
@@ -29,16 +30,16 @@ from reports.data.row import PinResult
 
 COUNT, RUN_ANEW, SEED = 1_000, 50, 7
 MAX_CHANGES = 3  # at once
-STUDIES = {  # and their cases, all where none are named
+STUDIES = {  # with the cases to solve; empty for all
     "landing_gear": (),
     "clevis": (),
     "lifting_arm": (),
     "one_pin": (),
     "excavator": ("breakout",),
 }
-OTHER = "another"  # a material beside those of the study
-FULL_DIFFERENCE = 1e-9  # relative, allowed between an engine and a run
-TIMELESS = {"seconds"}  # keys of what a run does not repeat
+OTHER = "another"  # a material added to those of the study
+FULL_DIFFERENCE = 1e-9  # allowed relative difference between an engine and a run
+TIMELESS = {"seconds"}  # keys of values that differ from run to run
 ANEW = """
 import sys
 from pathlib import Path
@@ -51,10 +52,7 @@ Draw = Callable[[np.random.Generator], "Change"]
 
 @dataclass(frozen=True)
 class Change:
-    """Another value of a key of a study.
-
-    pin: whose rows are asked for.
-    """
+    """Another value of a key of a study. pin: the pin whose rows are requested."""
 
     key: str
     value: Any
@@ -65,7 +63,8 @@ class Change:
 class Edited:
     """A study that is edited.
 
-    draws: by kind of edit, what draws one. changes: those at present.
+    draws: by kind of edit, functions that draw one.
+    changes: the current changes.
     """
 
     name: str
@@ -77,9 +76,10 @@ class Edited:
 
 @dataclass(frozen=True)
 class Asked:
-    """An edit and its quick answer; seconds of processor time.
+    """An edit and its quick answer.
 
-    refused: why the study cannot be built so; rows are then empty.
+    seconds: processor time.
+    refused: the reason why the study cannot be built with this edit; rows are then empty.
     """
 
     kind: str
@@ -93,11 +93,11 @@ class Asked:
 
 @dataclass(frozen=True)
 class Compared:
-    """An edit against the same study run anew.
+    """An edit compared with a run of the same study.
 
     edit: the row and the changes, as text.
-    full: the largest relative difference of a number of the full answer.
-    off, error: of the quick maximum, relative to that of the run: its difference and its error.
+    full: the largest relative difference of any number of the full answer.
+    off, error: difference and estimated error of the quick maximum, relative to that of the run.
     """
 
     kind: str
@@ -108,7 +108,7 @@ class Compared:
 
 
 def edits(count: int = COUNT, names: Iterable[str] = STUDIES) -> str:
-    """The tables of so many edits of some studies."""
+    """Return the tables of `count` edits of some studies."""
     rng = np.random.default_rng(SEED)
     studies = [_edited(name) for name in names]
     asked = [_ask(studies[k % len(studies)], rng) for k in range(count)]
@@ -120,7 +120,7 @@ def edits(count: int = COUNT, names: Iterable[str] = STUDIES) -> str:
 
 
 def _edited(name: str) -> Edited:
-    """A study with a further material, its engine warm."""
+    """Return a study with an additional material, with its engine warm."""
     given = pinstress.load_study(ROOT / "studies" / f"{name}.toml")
     raw = raw_study(given)
     first = dict(next(iter(raw["material"].values())))
@@ -133,7 +133,7 @@ def _edited(name: str) -> Edited:
 
 
 def _draws(study: Study) -> dict[str, list[Draw]]:
-    """What may be edited, by kind."""
+    """Return the functions that draw edits, by kind."""
     raw, pins = raw_study(study), tuple(study.table.pin)
     out: dict[str, list[Draw]] = {}
 
@@ -177,12 +177,12 @@ def _times_unit(value: float, unit: str) -> Callable[[float], str]:
 
 
 def _strengths(strength: float, factor: float) -> dict[str, list[str]]:
-    """A range about a strength, MPa, whose lower end is a factor of it."""
+    """Return a range about a strength, MPa, whose lower end is the strength times a factor."""
     return {"yield_strength": [f"{strength * x!r} MPa" for x in (factor, 2.0 - factor)]}
 
 
 def _scaled(value: Any, factor: float) -> Any:
-    """A number, a text with a unit, or a list or table of these, times a factor."""
+    """Return a number, a text with a unit, or a list or table of these, times a factor."""
     if isinstance(value, Mapping):
         return {k: _scaled(v, factor) for k, v in value.items()}
     if isinstance(value, list):
@@ -194,7 +194,7 @@ def _scaled(value: Any, factor: float) -> Any:
 
 
 def _loads(raw: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
-    """Kind, key and value of what a study's cases load it with."""
+    """Yield kind, key and value of the loads in a study's cases."""
     for name, case in raw["case"].items():
         if "forces" in case:
             yield "load", f"case.{name}.forces", case["forces"]
@@ -209,7 +209,7 @@ def _loads(raw: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
 
 
 def _ask(edited: Edited, rng: np.random.Generator) -> Asked:
-    """Draw an edit and ask for its quick rows."""
+    """Draw an edit and request its quick rows."""
     kinds = list(edited.draws)
     kind = kinds[int(rng.integers(len(kinds)))]
     draws = edited.draws[kind]
@@ -229,17 +229,17 @@ def _ask(edited: Edited, rng: np.random.Generator) -> Asked:
 
 
 def run_anew(path: str, pin: str, cases: list[str]) -> bytes:
-    """The packed rows of a pin of a study, as a run in this process finds them."""
+    """Return the packed rows of a pin of a study, as a run in this process finds them."""
     found = pinstress.run(pinstress.load_study(Path(path)), pins=[pin], cases=cases or None)
     return pack(found.pins)
 
 
 def _compare(asked: Asked) -> Iterator[Compared]:
-    """Each row of an edit against a run in a process of its own."""
+    """Yield the comparison of each row of an edit with a run in a process of its own."""
     edited = asked.edited
     study = pinstress.changed_study(edited.study, asked.changes)
     full = edited.engine.rows(asked.changes, [asked.pin])
-    folder = ROOT / "studies"  # for the files that the study names
+    folder = ROOT / "studies"  # where the files that the study names are found
     with tempfile.NamedTemporaryFile("w", suffix=".toml", dir=folder, encoding="utf-8") as file:
         file.write(study.text)
         file.flush()
@@ -256,7 +256,9 @@ def _compare(asked: Asked) -> Iterator[Compared]:
 
 
 def _difference(one: Any, other: Any) -> float:
-    """The largest relative difference of two numbers in the same place; inf for other content."""
+    """Return the largest relative difference of two numbers at the same place; inf for other
+    content.
+    """
     if isinstance(one, Mapping) and isinstance(other, Mapping) and one.keys() == other.keys():
         keys = one.keys() - TIMELESS
         return max((_difference(one[k], other[k]) for k in keys), default=0.0)
@@ -268,7 +270,7 @@ def _difference(one: Any, other: Any) -> float:
 
 
 def _times(asked: list[Asked]) -> str:
-    """Medians and 95th percentiles by kind of edit, ms of processor time."""
+    """Return the table of medians and 95th percentiles by kind of edit, ms of processor time."""
     rows = []
     for kind in sorted({x.kind for x in asked}):
         spent = 1e3 * np.array([x.seconds for x in asked if x.kind == kind and x.rows])
@@ -285,7 +287,7 @@ def _times(asked: list[Asked]) -> str:
 
 
 def _accuracy(compared: list[Compared]) -> str:
-    """How far the answers are from runs, by kind of edit."""
+    """Return the table of the differences from runs, by kind of edit."""
     rows = []
     for kind in sorted({x.kind for x in compared}):
         some = [x for x in compared if x.kind == kind]
@@ -311,7 +313,7 @@ def _accuracy(compared: list[Compared]) -> str:
 
 
 def _failures(compared: list[Compared]) -> str:
-    """A sentence on what must not be, and a line for each row of which it is true."""
+    """Return a sentence on rows beyond the allowed differences, and a line for each such row."""
     full = [x for x in compared if not x.full <= FULL_DIFFERENCE]
     quick = [x for x in compared if not x.off <= x.error]
     lines = [f"- {x.edit}: full, {x.full:.1e}" for x in full]

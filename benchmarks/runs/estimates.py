@@ -1,5 +1,5 @@
-"""The estimated diameters of a run, beside those that `pinstress size` finds, and the stress over
-mean pressure of pins with large diameters, which the estimates take.
+"""The estimated diameters of a run compared with those that `pinstress size` finds, and the stress
+over mean pressure of pins with large diameters, which the estimates use.
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ DISC_SCALES = 3.0, 4.0
 
 
 def estimates() -> str:
-    """The pins of the landing gear that fail in a run, and those pins sized."""
+    """Return the table of the landing gear's failing pins, estimated and sized, and that of large
+    diameters.
+    """
     preload(*RUN_LIBRARIES, *RUN_MODELS)
     study = load_study(ROOT / "studies" / "landing_gear.toml")
     factor = study.table.analysis.required_safety_factor
@@ -48,7 +50,9 @@ def estimates() -> str:
 
 
 def _discs() -> str:
-    """Pins of several times their diameters: the largest stress over the largest mean pressure."""
+    """Return the table of pins with several times their diameters: largest stress over largest mean
+    pressure.
+    """
     rows = [
         (name, pin, scale, f"{_over_pressure(name, pin, case, scale):.2f}")
         for name, pin, case in DISCS
@@ -75,7 +79,7 @@ def _sized(study: Study, factor: float, names: list[str]) -> Mapping[str, Sizing
 
 
 def _row(line: PinLine, sized: SizingResult) -> tuple[str, float, float, float, str] | None:
-    """A pin's row; None where no size was found."""
+    """Return the row of a pin; None if no size was found."""
     diameter = line.diameter
     if sized.scale is None or diameter is None or diameter.needed is None:
         return None

@@ -1,5 +1,5 @@
-"""The cost of fits: pins of the landing gear in lugs of H7/f7, whose light motion presses on narrow
-arcs beside a heavy landing.
+"""The cost of fits: pins of the landing gear in lugs of H7/f7, whose lightly loaded motion has
+narrow arcs of contact, in contrast to a heavy landing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,9 @@ WAYS = ("a range of clearance", "the fit", "the fit, every case to the tolerance
 
 
 def fits() -> str:
-    """Processor seconds of each pin, both cases, and what the minor case is off."""
+    """Return the table of processor times of each pin, s, both cases, and of the error of the minor
+    case.
+    """
     study = load_study(ROOT / "studies" / "landing_gear.toml")
     given, fitted = (prepare(x, pins=PINS) for x in (study, _fitted(study)))
     every = replace(fitted, requirement=replace(fitted.requirement, every=True))
@@ -39,7 +41,7 @@ def fits() -> str:
 
 
 def _fitted(study: Study) -> Study:
-    """The same with a fit instead of clearances and their range."""
+    """Return the study with a fit instead of clearances and their range."""
 
     def fitted(lug: LugTable) -> LugTable:
         return lug.model_copy(update={"fit": FIT, "clearance": None, "range": LugRangeTable()})

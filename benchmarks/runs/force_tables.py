@@ -1,4 +1,6 @@
-"""Reading of force tables: 200,000 instants of six components, in the forms that programs write."""
+"""Reading of force tables: 200,000 instants of six components, in the formats that
+programs write.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,9 @@ COLUMNS = {"time": "t"} | {f"B.{c}": c for c in COMPONENTS}
 
 
 def force_tables() -> str:
-    """Processor time of each form, and its ratio to NumPy's reading of the same numbers as text."""
+    """Return the table of the processor time of each format, and its ratio to NumPy's for the same
+    numbers as text.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         files = _written(folder)
@@ -37,7 +41,7 @@ def force_tables() -> str:
 
 
 def _least(work: Callable[[], object]) -> float:
-    """The least processor time of some runs, s, each of which reads the file anew."""
+    """Return the least processor time of some runs, s, each of which reads the file again."""
     costs = []
     for _ in range(RUNS):
         open_table._open.cache_clear()
@@ -48,7 +52,7 @@ def _least(work: Callable[[], object]) -> float:
 
 
 def _written(folder: Path) -> dict[str, Path]:
-    """The same table in all forms, by what it is."""
+    """Write the same table in all formats; return the files by a description."""
     times = np.arange(ROWS) * 1e-3
     values = np.column_stack([times, *(1e3 * np.sin(times * (k + 1)) for k in range(6))])
     comma = folder / "comma.csv"

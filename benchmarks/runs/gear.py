@@ -1,4 +1,6 @@
-"""Solving the landing gear's nine pins in two cases, with all kinds of support: computing alone."""
+"""Solution of the landing gear's nine pins in two cases, with all kinds of support: computation
+only.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ ONE = "E"
 
 
 def gear() -> str:
-    """Seconds and meshes of the three ways; and of one pin on its first meshes."""
+    """Return the tables of times and meshes of the three kinds of support, and of one pin on its
+    first meshes.
+    """
     published = load_study(STUDIES / "grenier2008.toml")
     improved = prepare(_in_balance(load_study(STUDIES / "landing_gear.toml")))
     ways = {
@@ -61,7 +65,7 @@ def gear() -> str:
 
 
 def _floating(study: Study) -> Study:
-    """The same with nothing clamped of what floats."""
+    """Return the study with no clamps on the floating pins."""
     table = study.table
     pins = {
         name: pin.model_copy(update={"clamp": ()}) if name in FLOATING else pin
@@ -72,7 +76,7 @@ def _floating(study: Study) -> Study:
 
 
 def _in_balance(study: Study) -> Study:
-    """The same without lugs: what a structure supports is clamped there."""
+    """Return the study without lugs; pins are clamped where a structure supports them."""
     pins = {
         name: pin.model_copy(update={"lug": {}, "clamp": pin.clamp or _structure(pin.lug)})
         for name, pin in study.table.pin.items()
@@ -89,8 +93,9 @@ def _material(plan: Plan, pin: str) -> Material:
 
 
 def _peaks(plans: Sequence[Plan], processes: int) -> list[tuple[bytes, Maximum]]:
-    """Of all plans, each with what was asked; what several ask alike is solved once, as a second
-    run finds it cached.
+    """Return the maxima of all plans, each with the key of its task.
+
+    Equal tasks of several plans are solved once, as the cache of a second run would do.
     """
 
     def job(plan: Plan, task: Task) -> Job[list[Maximum]]:

@@ -1,4 +1,4 @@
-"""Least weight of pins: what it saves beside scaling, how many designs it takes, and the time."""
+"""Least weight of pins: the saving compared with scaling, the number of designs, and the time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FACTORS = {"one_pin": 10.0, "engine": 3.0, "crane": 3.0, "grenier2008": 10.0}
 
 
 def saved() -> str:
-    """Of every pin of some studies, in one process."""
+    """Return the table of every pin of some studies, computed in one process."""
     rows, lines = [], []
     for name, factor in FACTORS.items():
         study = load_study(shipped(f"{name}.toml"))

@@ -1,4 +1,6 @@
-"""Cost of `pinstress loads` on linkages of a hundred bodies: processor time, memory, the report."""
+"""The cost of `pinstress loads` for linkages of a hundred bodies: processor time, memory, size of
+the report.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +28,8 @@ samples = INSTANTS
 
 
 def linkages() -> str:
-    """A scissor lift, a chain of four-bars and one of four-bars in space: the command's cost by the
-    number of instants.
+    """Return the table of a scissor lift, a chain of four-bars and a chain of four-bars in space,
+    by the number of instants.
     """
     studies = {
         "lift": lift_study(STAGES),
@@ -39,7 +41,9 @@ def linkages() -> str:
 
 
 def lift_study(stages: int) -> str:
-    """The study of a scissor lift with 2 stages + 3 bodies, without its instants."""
+    """Return the study of a scissor lift with 2 stages + 3 bodies; its number of instants is to be
+    filled in.
+    """
     linkage = lift(stages)
     names = {joint.at: joint.name for joint in linkage.joints}
     parts = [
@@ -60,7 +64,9 @@ def lift_study(stages: int) -> str:
 
 
 def chain_study(four_bars: int, seed: int = 1) -> str:
-    """The study of nearly equal four-bars in a row, each driven by the rocker of the one before."""
+    """Return the study of nearly equal four-bars in a row, each driven by the rocker of the one
+    before.
+    """
     rng = random.Random(seed)
 
     def near(x: float, y: float) -> tuple[float, float]:
@@ -86,7 +92,7 @@ def chain_study(four_bars: int, seed: int = 1) -> str:
 
 
 def space_study(stages: int) -> str:
-    """The study of four-bars in space, each driven by the rocker of the one before."""
+    """Return the study of four-bars in space, each driven by the rocker of the one before."""
     linkage = train(stages)
     parts = [
         "dimension = 3",

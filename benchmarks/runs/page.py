@@ -1,4 +1,6 @@
-"""The page of a study of many pins in Chromium: opened, searched, a pin shown, everything shown."""
+"""The page of a study of many pins in Chromium: opened, the last pin's 3D view shown, all parts
+unfolded.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +58,7 @@ HEAP = "return performance.memory.usedJSHeapSize / 1e6;"
 OPEN_PIN = "document.querySelector('section.pin:last-of-type details.fold').open = true;"
 VIEW = "return document.querySelector('section.pin:last-of-type [data-is=told]')?.textContent;"
 SCROLL = "document.querySelector('section.pin:last-of-type').scrollIntoView();"
-# What a reader waits for after a click: the next frame.
+# The time from a click to the next frame, for which a reader waits.
 FRAME = """
 const done = arguments[arguments.length - 1], start = performance.now();
 document.getElementById("unfold").click();
@@ -65,7 +67,7 @@ requestAnimationFrame(() => setTimeout(() => done(performance.now() - start), 0)
 
 
 def many_pins(number: int) -> str:
-    """A study of so many stepped pins, no two the same, under two static cases."""
+    """Return a study of `number` stepped pins, all different, under two static cases."""
     names = [f"P{k:03d}" for k in range(number)]
     pins = [PIN.format(name, 20 + 0.2 * k, 40 + 0.2 * k) for k, name in enumerate(names)]
     cases = []
@@ -79,7 +81,7 @@ def many_pins(number: int) -> str:
 
 
 def page() -> str:
-    """Size, nodes, memory and times of pages of few and of many pins."""
+    """Return the table of size, nodes, memory and times of pages of few and of many pins."""
     with tempfile.TemporaryDirectory() as folder:
         rows = [_row(number, Path(folder) / str(number)) for number in PINS]
     head = ("pins", "MB", "nodes", "loaded, s", "scripts' memory, MB")
@@ -102,8 +104,10 @@ def _row(number: int, folder: Path) -> tuple[object, ...]:
 
 
 def _opened(report: Path) -> tuple[Any, ...]:
-    """Nodes, seconds until loaded, MB of scripts, seconds until the last pin's view is
-    drawn and until all parts are open, nodes then.
+    """Return the measurements of a page in a browser.
+
+    These are: nodes, time until loaded, s, memory of scripts, MB, time until the last pin's view is
+    drawn, s, time until all parts are open, s, and the number of nodes then.
     """
     browser = chromium()
     try:
@@ -127,7 +131,7 @@ def _until(browser: Chrome, script: str, ready: Callable[[], object]) -> float:
 
 
 def chromium() -> Chrome:
-    """Headless, with WebGL in software."""
+    """Return a headless browser with WebGL in software."""
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 

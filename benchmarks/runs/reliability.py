@@ -1,8 +1,8 @@
-"""Probabilities of failure with exact answers: how near the ways of finding them come, by how many
-designs, and how often their 95 % intervals contain the exact value.
+"""Probabilities of failure with exact values: the accuracy of the methods that find them, the
+number of designs, and how often their 95 % intervals contain the exact value.
 
-The designs are formulas here, of which thousands are solved at once; what samples them is what
-`pinstress reliability` uses.
+The designs here are formulas, of which thousands are solved at once; they are sampled by the code
+that `pinstress reliability` uses.
 """
 
 from __future__ import annotations
@@ -28,13 +28,16 @@ Array = NDArray[np.float64]
 
 SEEDS = 200
 TABLE = ReliabilityTable(samples=2_000, importance_samples=1_000)
-TAIL = 0.0005  # probability of more, or of fewer, exact values in the intervals than is marked
+TAIL = 0.0005  # probability of more, and of fewer, exact values in the intervals than stated
 
 
 @dataclass(frozen=True)
 class Exact:
-    """A case: random numbers, what is used of the strength as a function of them, and the exact
-    probability that it exceeds one.
+    """A case with a known probability of failure.
+
+    space: the random numbers.
+    used: the used fraction of the strength as a function of them.
+    probability: the exact probability that this fraction exceeds one.
     """
 
     name: str
@@ -51,7 +54,7 @@ class Formula(SolvedDesigns):
         self.evaluator = _Smooth()  # type: ignore[assignment]
 
     def at(self, u: Array, purpose: str) -> Answers:
-        """As that of SolvedDesigns."""
+        """Return the answers at u, as SolvedDesigns.at does."""
         self.count += len(u)
         used = self.case.used(self.space.physical(u))[:, None]
         never = np.zeros(used.shape, dtype=bool)
@@ -59,22 +62,26 @@ class Formula(SolvedDesigns):
 
 
 class _Smooth:
-    numbers = ()  # none changes a mesh
+    numbers = ()  # no parameter changes a mesh
 
 
 def normal(mean: float, deviation: float) -> Marginal:
-    """A normal number of its deviate."""
+    """Return a normal number as a function of its standard normal deviate."""
     return lambda z: mean + deviation * z
 
 
 def lognormal(mean: float, deviation: float) -> Marginal:
-    """A lognormal number of its deviate, by its own mean and deviation."""
+    """Return a lognormal number as a function of its standard normal deviate; mean and deviation
+    are its own.
+    """
     variance = math.log1p((deviation / mean) ** 2)
     return lambda z: mean * np.exp(math.sqrt(variance) * z - 0.5 * variance)
 
 
 def cases() -> list[Exact]:
-    """Each with its probability in closed form or by an integral over one number."""
+    """Return the cases, each with its probability in closed form or by an integral over
+    one number.
+    """
     same = normal(0.0, 1.0)
     return [
         _bar(),
@@ -123,7 +130,7 @@ def _bar() -> Exact:
 
 
 def _ratio() -> Exact:
-    """Of two lognormal numbers, whose logarithms differ by a normal number."""
+    """Return the case of two lognormal numbers, whose logarithms differ by a normal number."""
     space = NormalSpace((lognormal(400.0, 32.0), lognormal(220.0, 33.0)))
     spreads = [math.log1p(0.08**2), math.log1p(0.15**2)]
     centre = math.log(400.0 / 220.0) - 0.5 * spreads[0] + 0.5 * spreads[1]
@@ -132,7 +139,7 @@ def _ratio() -> Exact:
 
 
 def _cantilever() -> Exact:
-    """Wu et al. (2001), w = 2.4484 in, t = 3.8884 in."""
+    """Return the cantilever of Wu et al. (2001), w = 2.4484 in, t = 3.8884 in."""
     w, t = 2.4484, 3.8884
     by_y, by_x = 600.0 / (w * t**2), 600.0 / (w**2 * t)
     space = NormalSpace((normal(500.0, 100.0), normal(1000.0, 100.0), normal(40_000.0, 2_000.0)))
@@ -159,7 +166,7 @@ def _correlated() -> Exact:
 
 
 def _parabola(name: str, curvature: float) -> Exact:
-    """Failure beyond 3 + curvature / 2 times the square of another number."""
+    """Return the case of failure beyond 3 + curvature / 2 times the square of another number."""
 
     def at(z: float) -> float:
         return float(norm.pdf(z) * ndtr(-3.0 - 0.5 * curvature * z * z))
@@ -173,7 +180,9 @@ def _parabola(name: str, curvature: float) -> Exact:
 
 
 def assessed(case: Exact, seed: int, table: ReliabilityTable = TABLE) -> tuple[Risk, int, int]:
-    """What is found with a seed, and the designs that FORM and that importance sampling solved."""
+    """Return the result with a seed, and the numbers of designs solved by FORM and by importance
+    sampling.
+    """
     settings = table.model_copy(update={"seed": seed})
     designs = Formula(case)
     draws = plain_draws(settings.samples, case.space.size, seed)
@@ -187,7 +196,7 @@ def assessed(case: Exact, seed: int, table: ReliabilityTable = TABLE) -> tuple[R
 
 
 def reliability() -> str:
-    """A table of all cases."""
+    """Return the table of all cases."""
     lines = [
         f"| case | exact | FORM | plain, {TABLE.samples:,} designs | importance sampling | designs "
         "of FORM, importance | plain contains | importance contains | reported contains |",

@@ -1,4 +1,4 @@
-"""How long things take, as ratios within one run wherever two ways can be compared."""
+"""Times of the program, as ratios within one run wherever two methods can be compared."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PIN = Pin("P", (Segment(0.02, 0.03), Segment(0.04, 0.02, connection="B")), fille
 
 
 def motion() -> str:
-    """Positions to reactions of the landing gear, by number of instants."""
+    """Return the times from positions to reactions of the landing gear, by number of instants."""
     study = load_study(STUDY)
     mechanism, courses = linkage(study), laws(study)
     rows = []
@@ -47,8 +47,11 @@ def motion() -> str:
 
 
 def assembly() -> str:
-    """Our stiffness matrix beside scikit-fem's form, each from the bare mesh, basis included: with
-    our quadrature (4 points), and with the one that scikit-fem chooses for these elements (11).
+    """Return the time of our stiffness matrix compared with scikit-fem's form, each from the bare
+    mesh, basis included.
+
+    scikit-fem's form is assembled with our quadrature (4 points) and with the one that scikit-fem
+    chooses for these elements (11).
     """
     rows = []
     for across in (6.0, 10.0):
@@ -70,7 +73,7 @@ def _form(mesh: MeshTet2, order: int | None) -> object:
     return form.assemble(Basis(mesh, ElementVector(ElementTetP2()), intorder=order))
 
 
-# What is run ends stderr with processor seconds, those of its children too, and the memory of the
+# The probed code ends stderr with its processor time, children included, s, and the memory of the
 # largest process, kB.
 PROBE = """
 import os, re, resource, sys
@@ -94,8 +97,8 @@ status = 0
 
 
 def demo() -> str:
-    """The main job and `check`: time, and memory of the largest process; the main job over its
-    computing alone.
+    """Return the table of the main job and of `check`: time, memory of the largest process, and the
+    main job over its computation alone.
     """
     with tempfile.TemporaryDirectory() as folder:
         run = ["run", str(STUDY), "--no-cache", "--out", f"{folder}/out"]
@@ -115,7 +118,9 @@ def demo() -> str:
 
 
 def _probed(work: str, *arguments: str) -> tuple[int, float, float, float]:
-    """Exit status, seconds, processor seconds, MB of the largest process."""
+    """Return exit status, wall time, s, processor time, s, and memory of the largest
+    process, MB.
+    """
     start = time.perf_counter()
     code = PROBE.format(work=work)
     done = subprocess.run([sys.executable, "-c", code, *arguments], capture_output=True, text=True)

@@ -1,5 +1,5 @@
-"""Sweeps of one pin: time and memory against the number of designs, two processes against one, and
-a thousand by simulation.
+"""Sweeps of one pin: time and memory by the number of designs, two processes compared with one, and
+a thousand processes by simulation.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from pinstress.explore.sweep.batches import Batch, Batches, SolvedBatch, aim_of
 from pinstress.explore.sweep.sweep import MemoryStore, Sweep, planned, solved
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_side_by_side
 
-FORCES = 5_000  # of one shape, with as many strengths
+FORCES = 5_000  # designs of one shape, each with another force and strength
 COUNTS = 250, 500, 1_000  # designs of other shapes
-STRENGTHS = 100, 200, 400  # of each of 50 loads of one shape
+STRENGTHS = 100, 200, 400  # for each of 50 loads of one shape
 JOBS = 2
-MANY = 150  # designs by which kinds of sweeps are compared
-ROUNDS, COMPARED = 3, 100  # by which one process and two are compared, in turn
-TASKS = 500  # that do nothing, by which the scheduler is measured
-WORKERS = 1_000
-EACH = 30  # batches for each worker of the simulation
+MANY = 150  # designs for the comparison of kinds of sweeps
+ROUNDS, COMPARED = 3, 100  # rounds and designs for the comparison of one process with two
+TASKS = 500  # empty tasks, with which the scheduler is measured
+WORKERS = 1_000  # simulated
+EACH = 30  # batches for each simulated worker
 LENGTHS = 0.5, 1.0, 2.0, 5.0, 10.0, 30.0  # s of work in a batch
-GOOD = 0.85  # efficiency
-BUSY = 0.5  # load of a core, above which times of the wall say little
+GOOD = 0.85  # required efficiency
+BUSY = 0.5  # load of a core above which wall times are not meaningful
 
 SHAPE = '"pin.B.profile[2].diameter" = {{ from = "1.5 in", to = "3 in", steps = {} }}'
 SCATTER = """
@@ -48,7 +48,7 @@ REST = """
 
 
 def sweep() -> str:
-    """The tables."""
+    """Return the tables."""
     load = os.getloadavg()[0]
     return "\n\n".join(
         [
@@ -78,7 +78,7 @@ def _load(load: float) -> str:
 
 
 def _growth(studies: dict[int, Study]) -> str:
-    """Times and memory of some numbers of designs."""
+    """Return the table of times and memory by number of designs."""
     grown = {count: _measured(study, JOBS) for count, study in studies.items()}
     rows = [(f"{n:,}", m.seconds, m.cpu, 1e3 * m.cpu / n, m.most) for n, m in grown.items()]
     counts = np.array(list(grown), float)
@@ -89,7 +89,9 @@ def _growth(studies: dict[int, Study]) -> str:
 
 
 def _study(count: int, shapes: int = 0, strengths: int = 40) -> Study:
-    """A Sobol sequence of all three, or with `shapes` a grid of so many diameters."""
+    """Return a Sobol sequence of diameter, force and strength, or with `shapes` a grid of this many
+    diameters.
+    """
     text = shipped_studies()["one_pin"].read_text(encoding="utf-8")
     how = 'sample = "grid"' if shapes else f'sample = "sobol"\ncount = {count}'
     varied = f"{SHAPE.format(shapes or 1)}{REST.format(strengths)}"
@@ -98,7 +100,7 @@ def _study(count: int, shapes: int = 0, strengths: int = 40) -> Study:
 
 @dataclass
 class Memory:
-    """The most memory (MB) that this process and its children had together, and their processor
+    """The peak of the memory of this process and its children together, MB, and their processor
     time, s.
     """
 
@@ -151,7 +153,7 @@ def _measured(study: Study, jobs: int) -> Measured:
 
 
 def _kinds() -> str:
-    """What makes a sweep quicker than distinct shapes."""
+    """Return the table of kinds of sweeps that are faster than distinct shapes."""
     rows = []
     for name, study in (
         ("every shape another", _study(MANY)),
@@ -167,7 +169,7 @@ def _kinds() -> str:
 
 
 def _forces(count: int) -> Study:
-    """A Sobol sequence of forces and strengths of one shape, each design with others."""
+    """Return a Sobol sequence of forces and strengths of one shape; all designs differ."""
     text = shipped_studies()["one_pin"].read_text(encoding="utf-8")
     head = f'sample = "sobol"\ncount = {count}'
     return study_from(f"{text}\n[vary]\n{head}\n[vary.parameters]{SCATTER}")
@@ -178,7 +180,7 @@ def _asking(study: Study, key: str) -> Study:
 
 
 def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[SolvedBatch]]:
-    """Wall time of some designs, s, and their batches."""
+    """Return the wall time of some designs, s, and their batches."""
     found: list[SolvedBatch] = []
     others = set(range(len(plan.values))) - set(some)
     batches = Batches(plan.problem.numbers, plan.values, others, jobs)
@@ -189,7 +191,9 @@ def _solved_by(jobs: int, plan: Sweep, some: range) -> tuple[float, list[SolvedB
 
 
 def _processor_time() -> float:
-    """Of this process and its children, also those that have ended, s."""
+    """Return the processor time of this process and its children, also of those that have
+    ended, s.
+    """
     import psutil
 
     us = psutil.Process()
@@ -197,13 +201,15 @@ def _processor_time() -> float:
 
 
 def _efficiency() -> str:
-    """One process and two solve other designs of the same sweep in turn, so that the load by others
-    is the same for both.
+    """Return the table of the efficiency of two processes.
+
+    One process and two solve other designs of the same sweep alternately, so that the load by other
+    work is the same for both.
     """
     plan = planned(_study(COMPARED * (ROUNDS + 1)))
     rounds = [range(k * COMPARED, (k + 1) * COMPARED) for k in range(ROUNDS + 1)]
     times, batches = [], list[SolvedBatch]()
-    for some in rounds:  # the first that imports are done
+    for some in rounds:  # the first round only loads the imports
         spent: list[float] = []
         for jobs in (1, 2):
             before = _processor_time()
@@ -229,8 +235,8 @@ def _nothing(problem: object, batch: Batch) -> SolvedBatch:
 
 
 def _overhead(plan: Sweep) -> tuple[float, float]:
-    """Processor time (s) of a task that does nothing: of this process with a scheduler of dask, and
-    of the processes that solve.
+    """Return the processor times of an empty task, s: of this process with a dask scheduler, and of
+    the processes that solve.
     """
     import psutil
     from distributed import Client, LocalCluster
@@ -273,12 +279,14 @@ def _simulated() -> str:
 
 
 def _simulate(length: float, relative: Floats, overhead: float) -> float:
-    """The share of all time in which processes work. A scheduler hands out one batch after the
-    other, each process has one that is solved and one that waits.
+    """Return the share of the time in which processes work.
+
+    A scheduler hands out one batch after the other; each process has one batch that it solves and
+    one that waits.
     """
     draw = np.random.default_rng(1)
     work = length * draw.choice(relative, WORKERS * EACH)
-    free = [0.0] * WORKERS  # when a process has ended what it was given
+    free = [0.0] * WORKERS  # the times at which the processes become free
     heapq.heapify(free)
     scheduler = 0.0
     for seconds in work.tolist():

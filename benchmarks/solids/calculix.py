@@ -1,8 +1,9 @@
-"""The solid model and CalculiX (C3D10, SPOOLES) on the same meshes, nodal forces and supports.
+"""The solid model and CalculiX (C3D10, SPOOLES) on the same meshes, with the same nodal forces and
+supports.
 
-Both integrate with the same four points, so displacements agree but for the digits that CalculiX
-prints. Its stresses at the nodes are averages of extrapolated values; ours are then corrected on
-the surface to carry the known traction.
+Both integrate with the same four points, so that displacements agree to the digits that CalculiX
+prints. CalculiX's stresses at the nodes are averages of extrapolated values; ours are then
+corrected on the surface so that they satisfy the known traction.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ AGREEMENT = ("unknowns", "displacements", "our peak", "ours, averaged only", "Ca
 
 @dataclass(frozen=True)
 class Pair:
-    """Both solutions on one mesh; fillet: its nodes."""
+    """Both solutions on one mesh. fillet: the nodes of the fillet."""
 
     fillet: Ints
     ours: Ours
@@ -43,22 +44,24 @@ class Pair:
 
     @property
     def unknowns(self) -> int:
-        """Displacement components, held ones included."""
+        """The number of displacement components, held ones included."""
         return self.ours.displacement.size
 
     @property
     def difference(self) -> float:
-        """Largest difference of displacements, relative to the largest displacement."""
+        """The largest difference of displacements, relative to the largest displacement."""
         mine, other = self.ours.displacement, self.theirs.displacement
         return float(np.abs(mine - other).max() / np.abs(mine).max())
 
     def peak(self, stress: Floats) -> float:
-        """Largest von Mises stress (Pa) of a stress (N, 6) at the nodes of the fillet."""
+        """Return the largest von Mises stress, Pa, of a stress (N, 6) at the nodes of the
+        fillet.
+        """
         return float(von_mises(stress[self.fillet]).max())
 
 
 def calculix() -> str:
-    """Agreement, time and memory of both on three meshes of a shoulder fillet in bending."""
+    """Return agreement, time and memory of both on three meshes of a shoulder fillet in bending."""
     if not installed():
         return MISSING
     pairs = [pair(factor) for factor in FINER]
@@ -100,9 +103,10 @@ def _agreement(p: Pair) -> tuple[object, ...]:
 
 
 def pair(factor: float) -> Pair:
-    """Both solutions on a mesh so many times finer than the coarse one, one after the other.
+    """Return both solutions, computed one after the other, on a mesh `factor` times finer than the
+    coarse one.
 
-    Raises: RunError when a process fails, CalculixError when CalculiX does.
+    Raises: RunError if a process fails, CalculixError if CalculiX does.
     """
     with bare_mesh(factor) as (mesh, folder):
         pin = Loaded(mesh)

@@ -42,8 +42,9 @@ ALONG_Y: tuple[Unit, ...] = ((UnitLoad(BAND, "force", 1), 1),)
 class Loaded:
     """The pin clamped at its start face and loaded on its band.
 
-    held: nodes that do not move. traction: (F, 6, 3, 1) on all facets of the boundary, Pa. forces:
-    (N, 3), N.
+    held: nodes that do not move.
+    traction: (F, 6, 3, 1) on all facets of the boundary, Pa.
+    forces: (N, 3), N.
     """
 
     def __init__(self, mesh: MeshTet2) -> None:
@@ -57,8 +58,10 @@ class Loaded:
 
 @dataclass(frozen=True)
 class Ours:
-    """displacement (N, 3), m; stress (N, 6) with the known tractions, and averaged only, Pa.
+    """Our solution.
 
+    displacement: (N, 3), m.
+    stress, averaged: (N, 6), Pa, with the known tractions, and averaged only.
     to_displacement, to_stress: wall time from the bare mesh, s.
     """
 
@@ -70,9 +73,9 @@ class Ours:
 
 
 def solve(mesh: MeshTet2) -> Ours:
-    """The same steps as in SolidModel.solve, timed.
+    """Return the solution by the steps of SolidModel.solve, timed.
 
-    Raises: SolveError when the solution is not accurate.
+    Raises: SolveError if the solution is not accurate.
     """
     start = time.perf_counter()
     pin = Loaded(mesh)

@@ -1,4 +1,6 @@
-"""How many unknowns a mesh of tetrahedra is expected to have before it is made, and has."""
+"""The number of unknowns expected of a mesh of tetrahedra before it is made, compared with its
+number.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from geometry.mesh.gmsh_session import gmsh_model, silence
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, solid_mesh
 
 SEED = 7
-IN_OTHER_WAYS = 4  # pins with cuts that are whole solids and files, too
+IN_OTHER_WAYS = 4  # pins with cuts that are also meshed as whole solids and from files
 SHAFT = Pin("shaft", (Segment(0.03, 0.04, connection="A"), Segment(0.07, 0.04)))
 SMALL = {  # features far smaller than their pin
     "keyway, radius d / 100": CutPin.of(SHAFT, (Slot(0.004, 0.026, 0.012, 0.005, 0.0, 4e-4),)),
@@ -37,8 +39,10 @@ Make = Callable[[], SolidMesh]
 
 
 def expected() -> str:
-    """Whole pins and bodies from files, as solids, and local solids about cuts; first meshes."""
-    found = [(name, *_beside(make)) for name, make in _meshes()]
+    """Return the table for first meshes: whole pins and bodies from files as solids, and local
+    solids about cuts.
+    """
+    found = [(name, *_measured(make)) for name, make in _meshes()]
     rows = [(name, n, f"{e:,.0f}", e / n, spent, made) for name, n, e, spent, made in found]
     ratios = [row[3] for row in rows]
     head = ("mesh", "unknowns", "expected", "ratio", "expecting, s", "meshing, s")
@@ -70,7 +74,7 @@ def _name(pin: CutPin) -> str:
 
 
 def _from_file(pin: CutPin) -> SolidMesh:
-    """The mesh of a pin whose file has its lengths in m."""
+    """Return the mesh of a pin from a file whose lengths are in mm."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "pin.step"
         with gmsh_model(pin.name) as model, silence():
@@ -79,8 +83,10 @@ def _from_file(pin: CutPin) -> SolidMesh:
         return cad_mesh(BodyFile("P", path, 1e-3, ()), MeshSize())
 
 
-def _beside(make: Make) -> tuple[int, float, float, float]:
-    """Unknowns of a mesh, those expected, and processor times of expecting and of all else, s."""
+def _measured(make: Make) -> tuple[int, float, float, float]:
+    """Return unknowns of a mesh, those expected, and the processor times of the expectation and of
+    all else, s.
+    """
     start = time.process_time()
     with _watched() as seen:
         mesh = make()
@@ -90,7 +96,9 @@ def _beside(make: Make) -> tuple[int, float, float, float]:
 
 @contextmanager
 def _watched() -> Iterator[list[tuple[float, float]]]:
-    """What is expected of each mesh that gmsh is told to make, and the time of that, s."""
+    """Yield a list to which each mesh that gmsh makes adds its expected unknowns and the time of
+    this, s.
+    """
     seen: list[tuple[float, float]] = []
     generate = gmsh.model.mesh.generate
 

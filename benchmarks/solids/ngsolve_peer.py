@@ -1,7 +1,8 @@
-"""The solid model beside NGSolve (C++, sparse Cholesky) on the same meshes, forces and supports.
+"""The solid model compared with NGSolve (C++, sparse Cholesky) on the same meshes, with the same
+forces and supports.
 
-NGSolve gets our curved ten-node tetrahedra and integrates with the same rule, so that displacements
-and energy agree to round-off.
+NGSolve solves our curved ten-node tetrahedra and integrates with the same rule, so that
+displacements and energy agree to round-off.
 """
 
 from __future__ import annotations
@@ -27,12 +28,12 @@ from pathlib import Path
 from benchmarks.solids.ngsolve_side import main
 main(Path({!r}), Path({!r}), {})
 """
-MESHES = (*FINER[:2], 1.75)  # on CalculiX's third NGSolve takes a minute
+MESHES = (*FINER[:2], 1.75)  # on the third mesh of CalculiX, NGSolve would take a minute
 AGREEMENT = ("unknowns", "displacements", "energy, ours, J", "energy, difference")
 
 
 def ngsolve() -> str:
-    """Agreement, time and memory of both on three meshes of a shoulder fillet in bending."""
+    """Return agreement, time and memory of both on three meshes of a shoulder fillet in bending."""
     if importlib.util.find_spec("ngsolve") is None:
         return MISSING
     agreement, costs, version = [], [], ""
@@ -63,9 +64,10 @@ def _agreement(given: Given, ours: Ours, theirs: Found) -> tuple[object, ...]:
 
 
 def pair(factor: float) -> tuple[Given, Ours, Process, Found, Process]:
-    """Both solutions on a mesh so many times finer than the coarse one, one after the other.
+    """Return both solutions, computed one after the other, on a mesh `factor` times finer than the
+    coarse one.
 
-    Raises: RunError when a process fails.
+    Raises: RunError if a process fails.
     """
     with bare_mesh(factor) as (mesh, folder):
         pin = Loaded(mesh)

@@ -1,6 +1,6 @@
-"""NGSolve's side: our mesh, its curved edges included, our nodal forces, its assembly and solver.
+"""NGSolve's side: our mesh with its curved edges, our nodal forces, its assembly and solver.
 
-Runs in its own process, with as little of ours as it can: the mesh comes as arrays.
+It runs in its own process with as little of our code as possible: the mesh is passed as arrays.
 """
 
 from __future__ import annotations
@@ -16,14 +16,19 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Netgen has the corners, then edges 01, 02, 03, 12, 13, 23; ours are 01, 12, 02, 03, 13, 23.
+# Netgen's nodes are the corners, then edges 01, 02, 03, 12, 13, 23; ours 01, 12, 02, 03, 13, 23.
 TET10 = [0, 1, 2, 3, 4, 6, 7, 5, 8, 9]
-EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # ours
+EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # in our order
 
 
 @dataclass(frozen=True)
 class Given:
-    """nodes (N, 3) m, corners first; elements (M, 10); held: nodes; forces (N, 3) N; lame: Pa."""
+    """The problem.
+
+    nodes: (N, 3), m, corners first. elements: (M, 10).
+    held: nodes that do not move.
+    forces: (N, 3), N. lame: Pa.
+    """
 
     nodes: Floats
     elements: Ints
@@ -34,7 +39,12 @@ class Given:
 
 @dataclass(frozen=True)
 class Found:
-    """displacement (N, 3), m. seconds: wall time from the mesh in NGSolve's form on."""
+    """NGSolve's solution.
+
+    displacement: (N, 3), m.
+    seconds: wall time from the mesh in NGSolve's form, s.
+    version: of NGSolve.
+    """
 
     displacement: Floats
     seconds: float
@@ -42,7 +52,9 @@ class Found:
 
 
 def solve(given: Given, threads: int) -> Found:
-    """Assemble with the four-point rule that ours has, factorise (sparse Cholesky), solve."""
+    """Return the solution: assembly with our four-point rule, sparse Cholesky factorisation, one
+    solve.
+    """
     import ngsolve as ng
 
     ng.SetNumThreads(threads)
@@ -86,7 +98,9 @@ def _netgen(given: Given) -> object:
 
 
 def _dofs(mesh: object, given: Given) -> Ints:
-    """NGSolve's number of each of our nodes: its vertices are our corners, then come its edges."""
+    """Return NGSolve's number of each of our nodes: its vertices are our corners, and its edges
+    follow.
+    """
     vertices = mesh.nv  # type: ignore[attr-defined]
     theirs = np.array([[v.nr for v in e.vertices] for e in mesh.edges])  # type: ignore[attr-defined]
     number = {tuple(sorted(ends)): vertices + k for k, ends in enumerate(theirs.tolist())}
@@ -99,5 +113,5 @@ def _dofs(mesh: object, given: Given) -> Ints:
 
 
 def main(given: Path, result: Path, threads: int) -> None:
-    """Solve what is pickled and pickle the result."""
+    """Solve a pickled problem and pickle the result."""
     result.write_bytes(pickle.dumps(solve(pickle.loads(given.read_bytes()), threads)))

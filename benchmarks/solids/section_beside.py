@@ -1,4 +1,4 @@
-"""The harmonic model on the pin of the comparison with CalculiX: error and time of its peak."""
+"""The harmonic model on the pin of the comparison with CalculiX: error and time of its maximum."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ LOADS = PinLoads("case", (BAND,), np.array([[[0.0, FORCE, 0.0]]]))
 
 
 def peak(size: SectionSize) -> tuple[int, float, float]:
-    """Unknowns, largest von Mises stress at the fillet (Pa), and seconds from the pin on: meshing,
-    solving, maximum; the least of some runs.
+    """Return unknowns, the largest von Mises stress at the fillet, Pa, and the time from the pin
+    on, s.
+
+    The time is the least of some runs of meshing, solution and maximum.
     """
     spent = []
     for _ in range(RUNS):
@@ -37,8 +39,8 @@ def peak(size: SectionSize) -> tuple[int, float, float]:
 
 
 def beside(rows: list[tuple[str, int, float, float]]) -> str:
-    """Errors and times of others (name, unknowns, peak, seconds) beside the first mesh of a section
-    that is at least as right.
+    """Return the table of errors and times of other programs (name, unknowns, maximum, seconds),
+    each compared with the first mesh of a section that is at least as accurate.
     """
     _, true, _ = peak(FINEST)
     ours = [(n, abs(value / true - 1.0), s) for n, value, s in map(peak, SIZES)]

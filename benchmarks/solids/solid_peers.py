@@ -1,4 +1,6 @@
-"""What comparisons of the solid model with other programs share: meshes, our side, ratio tables."""
+"""Code shared by the comparisons of the solid model with other programs: meshes, our side, tables
+of ratios.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +31,10 @@ main(Path({!r}), Path({!r}))
 
 @dataclass(frozen=True)
 class Cost:
-    """What both took on a mesh of `unknowns`: seconds of wall time from the bare mesh on, seconds
-    on all cores and megabytes of the whole processes; each ours, then theirs.
+    """The cost of both programs on a mesh, each ours and theirs.
+
+    seconds: wall time from the bare mesh, s.
+    processor, megabytes: processor time on all cores, s, and memory, MB, of the whole processes.
     """
 
     unknowns: int
@@ -40,7 +44,7 @@ class Cost:
 
 
 def cost(unknowns: int, seconds: tuple[float, float], ours: Process, theirs: Process) -> Cost:
-    """Of two processes."""
+    """Return the cost of two processes."""
     return Cost(
         unknowns,
         seconds,
@@ -51,23 +55,26 @@ def cost(unknowns: int, seconds: tuple[float, float], ours: Process, theirs: Pro
 
 @contextmanager
 def bare_mesh(factor: float) -> Iterator[tuple[MeshTet2, Path]]:
-    """A mesh without results, and a folder that has it as file `mesh`."""
+    """Yield a mesh without cached results, and a folder with the mesh as file `mesh`."""
     mesh = solid_mesh(PIN, COARSE.finer(factor)).mesh
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "mesh").write_bytes(pickle.dumps(mesh))  # before any use, which leaves results
+        (folder / "mesh").write_bytes(pickle.dumps(mesh))  # before any use, which caches results
         yield mesh, folder
 
 
 def solved_by_us(folder: Path) -> tuple[Ours, Process]:
-    """Our solution on the file `mesh`, in its own process. Raises: RunError."""
+    """Return our solution on the file `mesh`, computed in its own process.
+
+    Raises: RunError.
+    """
     given, found = folder / "mesh", folder / "ours"
     ours = process([sys.executable, "-c", SOLVE.format(str(given), str(found))], ROOT)
     return pickle.loads(found.read_bytes()), ours
 
 
 def ratios(name: str, costs: list[Cost]) -> str:
-    """The table of time and memory, and in words where we lose."""
+    """Return the table of time and memory, and a sentence on where ours takes more."""
     head = ["unknowns"]
     for what in ("time, s", "all cores, s", "memory, MB"):
         head += [f"{what}: ours", name, "ours / theirs"]

@@ -10,7 +10,7 @@ Vector = tuple[float, float, float]
 
 
 class BodyData(TypedDict):
-    """A rigid body: kg, m, kg m^2 about the centre along world axes as drawn."""
+    """A rigid body: kg, m, and kg m^2 about its centre along world axes as drawn."""
 
     mass: float
     centre: Vector
@@ -18,7 +18,7 @@ class BodyData(TypedDict):
 
 
 def rod(mass: float, start: Vector, end: Vector, radius: float = 0.03) -> BodyData:
-    """A solid cylinder between two points."""
+    """Return a solid cylinder between two points."""
     a, b = np.array(start), np.array(end)
     length = float(np.linalg.norm(b - a))
     e = (b - a) / length
@@ -28,7 +28,7 @@ def rod(mass: float, start: Vector, end: Vector, radius: float = 0.03) -> BodyDa
 
 
 def block(mass: float, centre: Vector, moments: Vector, products: Vector) -> BodyData:
-    """A body by its moments Ixx, Iyy, Izz and the entries xy, xz, yz of its tensor."""
+    """Return a body by its moments Ixx, Iyy, Izz and the entries xy, xz, yz of its tensor."""
     xy, xz, yz = products
     tensor = np.diag(moments) + np.array([[0, xy, xz], [xy, 0, yz], [xz, yz, 0]])
     return {"mass": mass, "centre": centre, "inertia": _tensor(tensor)}
@@ -43,13 +43,14 @@ def _tensor(m: Any) -> tuple[Vector, Vector, Vector]:
 
 
 def square(v: Vector, to: Vector) -> Vector:
-    """The part of a vector that is square to another."""
+    """Return the part of a vector that is perpendicular to another."""
     e = np.array(to) / np.linalg.norm(to)
     return vector(np.array(v) - float(np.dot(v, e)) * e)
 
 
 def bennett_frames(a: float, b: float, alpha: float, beta: float, angle: float) -> tuple[Any, Any]:
-    """Points and axes (4, 3) of a Bennett linkage, links a, b, a, b of twists alpha, beta.
+    """Return points and axes (4, 3) of a Bennett linkage with links a, b, a, b of twists alpha,
+    beta.
 
     angle: of the link a = p0 p1 about axis 0 from the link d = p0 p3, rad. The other angle follows
     from tan(angle / 2) tan(other / 2) = sin((beta + alpha) / 2) / sin((beta - alpha) / 2).

@@ -1,7 +1,9 @@
-"""Ten driven machines in space as plain data, from which our linkages and those of peers are built.
+"""Ten driven machines in space as plain data, from which our linkages and those of other codes are
+built.
 
 Every machine starts at rest as drawn and is moved by cycloidal drives. None has a redundant joint,
-so that statics determines every component of every joint. All in SI units and world axes.
+so that statics determines every component in every joint. All values are in SI units and world
+axes.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ class JointData(TypedDict, total=False):
 
 
 class DriveData(TypedDict):
-    """A drive of a joint's angle (rad) or travel (m), from 0 as drawn to `to`."""
+    """A drive of the angle (rad) or travel (m) of a joint, from 0 as drawn to `to`."""
 
     joint: str
     measures: str
@@ -33,9 +35,9 @@ class DriveData(TypedDict):
 
 
 class Machine(TypedDict):
-    """A machine, the time its drives take (s), and loads that act all the time.
+    """A machine, the time its drives take, s, and loads that act all the time.
 
-    forces: (body, point as drawn, force in world axes) each.
+    forces: (body, point as drawn, force in world axes) of each load.
     """
 
     bodies: dict[str, BodyData]
@@ -59,7 +61,7 @@ def _joint(kind: str, base: str, moving: str, at: Vector, *axes: Vector) -> Join
 
 
 def rssr() -> Machine:
-    """A four-bar in space; a universal joint at one end keeps its coupler from spinning."""
+    """Return a four-bar in space; a universal joint at one end keeps its coupler from spinning."""
     a, b, d = (0.25, 0.1, 0.35), (0.9, 0.75, 0.3), (1.0, 0.2, 0.1)
     rocker = (0.0, 0.3, 1.0)
     return {
@@ -82,7 +84,7 @@ def rssr() -> Machine:
 
 
 def slider_crank() -> Machine:
-    """A spatial slider-crank: the axes of crank and slider do not meet."""
+    """Return a spatial slider-crank: the axes of crank and slider do not meet."""
     a, b = (0.0, 0.12, 0.16), (0.75, 0.15, -0.1)
     along = (1.0, 0.1, 0.05)
     return {
@@ -105,7 +107,9 @@ def slider_crank() -> Machine:
 
 
 def hooke() -> Machine:
-    """Two shafts at 35 degrees with a universal joint; a point on its axis guides the second."""
+    """Return two shafts at 35 degrees with a universal joint; a point on its axis guides the
+    second.
+    """
     out = vector((np.cos(np.radians(35.0)), np.sin(np.radians(35.0)), 0.0))
     end, across = vector(0.8 * np.array(out)), square((0, 1, 0), out)
     return {
@@ -126,7 +130,9 @@ def hooke() -> Machine:
 
 
 def gyroscope() -> Machine:
-    """A rotor that runs up in two gimbals which are turned meanwhile: an open chain of hinges."""
+    """Return a rotor that spins up in two gimbals, which are turned meanwhile: an open chain of
+    hinges.
+    """
     at = (0.0, 0.0, 0.0)
     return {
         "bodies": {
@@ -151,7 +157,9 @@ def gyroscope() -> Machine:
 
 
 def crane() -> Machine:
-    """A slewing crane: a jack with a universal and a spherical end lifts boom and fixed payload."""
+    """Return a slewing crane: a jack with a universal and a spherical end lifts the boom and a
+    fixed payload.
+    """
     jack, eye, tip = (0.6, 0.1, 0.5), (1.6, 0.05, 1.9), (4.0, -0.1, 3.2)
     way = (1.0, -0.05, 1.4)
     return {
@@ -183,7 +191,7 @@ def crane() -> Machine:
 
 
 def landing_gear() -> Machine:
-    """A leg that folds about a skewed hinge, held by a folding stay out of its plane."""
+    """Return a leg that folds about a skewed hinge, held by a folding stay out of its plane."""
     knee, eye = (0.55, 0.45, -0.45), (0.05, 0.1, -0.9)
     return {
         "bodies": {
@@ -210,7 +218,9 @@ def landing_gear() -> Machine:
 
 
 def table() -> Machine:
-    """A table on a tilted plane, moved by two cranks whose pins reach into it along its normal."""
+    """Return a table on a tilted plane, moved by two cranks whose pins engage it along
+    its normal.
+    """
     n, u, v = _plane()
 
     def at(x: float, y: float, z: float) -> Vector:
@@ -239,7 +249,7 @@ def table() -> Machine:
 
 
 def _plane() -> Any:
-    """Normal of a tilted plane, and two directions in it."""
+    """Return the normal of a tilted plane, and two directions in it."""
     n = np.array([0.2, -0.3, 1.0]) / np.linalg.norm([0.2, -0.3, 1.0])
     u = np.cross([0.0, 1.0, 0.0], n)
     u = u / np.linalg.norm(u)
@@ -247,7 +257,9 @@ def _plane() -> Any:
 
 
 def quill() -> Machine:
-    """A heavy quill that turns and slides on a tilted cylinder, with a skew rotor at its end."""
+    """Return a heavy quill that turns and slides on a tilted cylinder, with a skewed rotor at its
+    end.
+    """
     return {
         "bodies": {
             "quill": block(20.0, (0.1, 0.05, 0.4), (0.9, 0.8, 0.2), (0.05, 0.1, -0.04)),
@@ -269,7 +281,7 @@ def quill() -> Machine:
 
 
 def two_stage() -> Machine:
-    """Two RSUR four-bars in series: the rocker of the first is the crank of the second."""
+    """Return two RSUR four-bars in series: the rocker of the first is the crank of the second."""
     first = rssr()
     c, e, f = (1.1, 0.8, -0.1), (1.6, 0.5, 0.6), (1.8, -0.1, 0.4)
     follower = (1.0, 0.2, 0.5)
@@ -285,9 +297,10 @@ def two_stage() -> Machine:
 
 
 def bennett() -> Machine:
-    """Bennett's linkage, two of whose hinges are relieved: spherical and cylindrical.
+    """Return Bennett's linkage, two of whose hinges are relieved: one is spherical, one
+    cylindrical.
 
-    Links a = 0.5 m twisted by 40 degrees, b with sin(twist) / b the same.
+    Links a = 0.5 m twisted by 40 degrees, and b with the same sin(twist) / b.
     """
     a, alpha = 0.5, np.radians(40.0)
     beta = np.radians(70.0)

@@ -1,4 +1,4 @@
-"""Cost of motion and forces in space by the number of bodies: RSUR four-bars in series."""
+"""The cost of motion and forces in space by the number of bodies: RSUR four-bars in series."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from loads.space.linkage import JointAngle, RigidBody, SpaceJoint, SpaceLinkage
 from loads.space.motion import SpaceCourse
 from pinbase.arrays import Floats
 
-SPACING, RADIUS, TILT = 1.0, 0.3, 0.1  # m between cranks, of cranks; rad of their axes, in turns
+SPACING, RADIUS, TILT = 1.0, 0.3, 0.1  # distance and radius of cranks, m; tilt of their axes, rad
 SWING, SPAN = 0.3, 4.0  # rad of the first crank, s
 CASES = ((5, 2_000), (20, 2_000), (50, 20_000))  # stages (2 bodies each), instants
 TARGET = "Target: 100 bodies x 20,000 instants in 300 s and 2,000 MB."
 
 
 def train(stages: int) -> SpaceLinkage:
-    """A crank and `stages` couplers and rockers, whose axes are tilted in turns."""
+    """Return a crank and `stages` couplers and rockers, whose axes are tilted in different
+    directions.
+    """
     bodies, joints, axes, pins = [], [], [], []
     for k in range(stages + 1):
         tilt = TILT * np.array([np.cos(2.0 * k), np.sin(2.0 * k), 0.0])
@@ -66,7 +68,9 @@ def _axis(v: Vector) -> Vector:
 
 
 def space() -> str:
-    """Processor times of path and of motion and forces, largest memory, and power unaccounted."""
+    """Return the processor times of the path and of motion and forces, the largest memory, and the
+    error of the power balance.
+    """
     head = ("bodies", "instants", "path, s", "motion and forces, s", "ms an instant", "memory, MB")
     rows = [_row(*case) for case in CASES]
     return f"{TARGET}\n\n{table((*head, 'power amiss'), rows)}"

@@ -1,4 +1,4 @@
-"""A machine of plain data as our linkage, and what we find for it."""
+"""A machine of plain data as our linkage, and our result for it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pinbase.arrays import Floats
 
 
 def space_linkage(machine: Machine) -> SpaceLinkage:
-    """The linkage of a machine."""
+    """Return the linkage of a machine."""
     measured: list[JointAngle | JointTravel] = []
     for name, drive in machine["drives"].items():
         kind = JointAngle if drive["measures"] == "angle" else JointTravel
@@ -33,7 +33,7 @@ def space_linkage(machine: Machine) -> SpaceLinkage:
 
 
 def _joint(name: str, data: dict[str, Any]) -> SpaceJoint:
-    """A joint whose directions have unit length."""
+    """Return a joint whose directions have unit length."""
     unit: dict[str, Any] = {
         key: tuple(np.array(data[key]) / np.linalg.norm(data[key]))
         for key in ("axis", "second_axis")
@@ -44,7 +44,7 @@ def _joint(name: str, data: dict[str, Any]) -> SpaceJoint:
 
 
 def ours(machine: Machine, times: Floats) -> PeerForces:
-    """What we find at times (T,) s."""
+    """Return our result at times (T,), s."""
     linkage = space_linkage(machine)
     laws = [CycloidalDrive(0.0, d["to"], machine["duration"]) for d in machine["drives"].values()]
     motion = space_move(linkage, laws, times)

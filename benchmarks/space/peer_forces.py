@@ -1,4 +1,4 @@
-"""Forces and moments in the joints of a machine, as ours and as the peers give them."""
+"""Forces and moments in the joints of a machine, by our code and by others."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class PeerForces:
-    """Wrenches in C joints and forces of D drives at T instants.
+    """The wrenches in C joints and the forces of D drives at T instants.
 
-    points: (T, C, 3) m, of the moving body at each joint.
-    forces, moments: (T, C, 3) N and N m, of the moving body on the base, about that point, in world
-    axes, without what the drives exert.
-    drives: (T, D) N or N m, positive where they increase the coordinate.
+    points: (T, C, 3), of the moving body at each joint, m.
+    forces, moments: (T, C, 3), N and N m, of the moving body on the base, about this point, in
+    world axes, without the forces of the drives.
+    drives: (T, D), N or N m, positive where they increase the coordinate.
     """
 
     points: Floats
@@ -26,15 +26,17 @@ class PeerForces:
 
     @classmethod
     def fields(cls) -> tuple[str, ...]:
-        """Names of the quantities."""
+        """Return the names of the quantities."""
         return tuple(field.name for field in fields(cls))
 
     def every(self, step: int) -> PeerForces:
-        """Those at every so many of the instants, with the last."""
+        """Return the values at every `step`-th instant, the last included."""
         return PeerForces(*(getattr(self, name)[step - 1 :: step] for name in self.fields()))
 
     def difference(self, reference: PeerForces) -> float:
-        """The largest difference of all quantities, relative to the largest of their kind."""
+        """Return the largest difference of all quantities, relative to the largest value of their
+        kind.
+        """
         return max(
             float(np.abs(getattr(self, name) - getattr(reference, name)).max())
             / float(np.abs(getattr(reference, name)).max())

@@ -1,8 +1,9 @@
-"""A machine in exudyn: its rigid bodies and generic joints, integrated in time.
+"""A machine in exudyn: rigid bodies and generic joints, integrated in time.
 
-Drives are constraints on position (index 3), joints of their own beside the joint that they move,
-so that the forces of both come apart. Rotations are Euler parameters, the integrator is generalised
-alpha, of second order: forces at two steps are extrapolated to none.
+Drives are constraints on position (index 3) and joints of their own, parallel to the joint that
+they move, so that the forces of both can be separated. Rotations are Euler parameters. The
+integrator is the generalised alpha method, of second order: forces at two steps are extrapolated to
+a step of zero.
 """
 
 from __future__ import annotations
@@ -19,8 +20,8 @@ from benchmarks.space.peer_forces import PeerForces
 from loads import CycloidalDrive
 from pinbase.arrays import Floats
 
-# Axes that each kind constrains in the frame of its base: three of translation, three of rotation.
-# A universal joint has its axes along x of the base's marker and y of the moving body's.
+# Axes that each kind constrains in the frame of its base: three translations, three rotations. The
+# axes of a universal joint are x of the base's marker and y of the moving body's.
 CONSTRAINED = {
     "revolute": [1, 1, 1, 1, 1, 0],
     "spherical": [1, 1, 1, 0, 0, 0],
@@ -35,7 +36,9 @@ DRIVEN = {"angle": [0, 0, 0, 0, 0, 1], "travel": [0, 0, 1, 0, 0, 0]}
 
 
 def solve(machine: Machine, times: Floats, steps: int) -> PeerForces:
-    """Forces at equally spaced times with `steps` of the integrator from one to the next."""
+    """Return the forces at equally spaced times, with `steps` integration steps from one to the
+    next.
+    """
     model = _Model(machine)
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
@@ -43,7 +46,7 @@ def solve(machine: Machine, times: Floats, steps: int) -> PeerForces:
     course = settings.timeIntegration
     course.endTime = times[-1]
     course.numberOfSteps = steps * len(times)
-    course.generalizedAlpha.spectralRadius = 0.5  # forgets the transient at the start
+    course.generalizedAlpha.spectralRadius = 0.5  # damps the transient at the start
     course.generalizedAlpha.computeInitialAccelerations = True
     course.newton.useModifiedNewton = False
     course.newton.relativeTolerance = 1e-11
@@ -102,7 +105,9 @@ class _Model:
                                               writeToFile=False)))  # fmt: skip
 
     def _add_joint(self, name: str) -> dict[str, int]:
-        """Sensors of a joint: multipliers, and frames of both its markers."""
+        """Add a joint; return its sensors: multipliers, and frames and positions of both its
+        markers.
+        """
         joint = self.machine["joints"][name]
         frame = joint_frame(joint.get("axis"), joint.get("second_axis"))
         bodies = joint["base"], joint["moving"]
@@ -163,13 +168,13 @@ class _Model:
         return rows[chosen, 1:]
 
     def forces(self, times: Floats) -> PeerForces:
-        """Forces and moments from exudyn's multipliers."""
+        """Return forces and moments from exudyn's multipliers."""
         wrenches = [
             self._wrench(joint["kind"], sensors, times)
             for joint, sensors in zip(self.machine["joints"].values(), self.joints, strict=True)
         ]
         points, forces, moments = (np.stack(x, axis=1) for x in zip(*wrenches, strict=True))
-        # Exudyn's condition of a travel rises with it, that of an angle, x . y, falls with it.
+        # Exudyn's condition of a travel increases with it; that of an angle, x . y, decreases.
         signs = [1.0 if d["measures"] == "angle" else -1.0 for d in self.machine["drives"].values()]
         pairs = zip(signs, self.drives, strict=True)
         drives = np.stack([sign * self._stored(k, times)[:, 2] for sign, k in pairs], axis=1)
@@ -178,14 +183,16 @@ class _Model:
     def _wrench(
         self, kind: str, sensors: dict[str, int], times: Floats
     ) -> tuple[Floats, Floats, Floats]:
-        """Point of the moving body, force and moment on the base there, (T, 3) each."""
+        """Return the point of the moving body, and the force and moment on the base there, (T, 3)
+        each.
+        """
         stored = {name: self._stored(sensor, times) for name, sensor in sensors.items()}
         base, moving = (stored[end].reshape(-1, 3, 3) for end in ("base", "moving"))
         force = np.einsum("tij,tj->ti", base, stored["force"])
         torque = stored["torque"]
         moment = np.zeros_like(force)
-        # Multiplier f of the condition a . b = 0, a of the base, b of the moving body: its moment
-        # on the moving body is -f b x a, on the base the opposite.
+        # For the multiplier f of the condition a . b = 0, with a of the base and b of the moving
+        # body, the moment on the moving body is -f b x a, and on the base the opposite.
         for row, a, b in _right_angles(kind):
             arm = np.cross(moving[:, :, b], base[:, :, a])
             moment += torque[:, row, None] * arm
@@ -193,7 +200,9 @@ class _Model:
 
 
 def _right_angles(kind: str) -> list[tuple[int, int, int]]:
-    """Rows of torque, axes of the base and of the moving body which exudyn keeps square."""
+    """Return rows of torque with the axes of base and moving body that exudyn keeps
+    perpendicular.
+    """
     match sum(CONSTRAINED[kind][3:]):
         case 3:
             return [(0, 2, 1), (1, 2, 0), (2, 0, 1)]
@@ -205,7 +214,9 @@ def _right_angles(kind: str) -> list[tuple[int, int, int]]:
 
 
 def joint_frame(axis: Vector | None, second: Vector | None) -> Floats:
-    """Axes of a joint's markers as columns: z along its axis; of a universal joint x and y."""
+    """Return the axes of a joint's markers as columns: z along its axis, or x and y for a universal
+    joint.
+    """
     if axis is None:
         return np.eye(3)
     first = np.array(axis) / np.linalg.norm(axis)

@@ -1,10 +1,10 @@
 """A machine in MuJoCo: a tree of its joints by MuJoCo's recursive Newton-Euler equations.
 
-MuJoCo's own constraints are soft: with its smallest regularisation they give forces to about 1e-5.
-So loops are cut here at spherical joints and points on lines; the forces there are those that leave
-no torque in the joints of the tree which nothing drives, by MuJoCo's inverse dynamics (mj_inverse)
-and the Jacobians of its points; the wrench in every other joint is MuJoCo's own interaction force
-with the parent (cfrc_int). Positions follow by Newton's method, to round-off.
+MuJoCo's own constraints are soft: with their smallest regularisation they give forces accurate to
+about 1e-5. Therefore loops are cut here at spherical joints and points on lines. The forces there
+are those that leave no torque in the passive joints of the tree, by MuJoCo's inverse dynamics
+(mj_inverse) and the Jacobians of the points. The wrench in every other joint is MuJoCo's own
+interaction force with the parent (cfrc_int). Positions are found by Newton's method, to round-off.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from pinbase.arrays import Floats
 
 CUT = ("spherical", "point-on-line")
 MAX_NEWTON_STEPS = 50
-ROUND_OFF = 1e-14  # m, of a closed loop
+ROUND_OFF = 1e-14  # m, gap of a closed loop
 
 
 def solve(machine: Machine, times: Floats) -> PeerForces:
-    """Forces at increasing times, at which the loops are closed one after another."""
+    """Return the forces at increasing times, at which the loops are closed one after another."""
     model = _Model(machine)
     rows = [model.at(time) for time in times]
     points, forces, moments, drives = (np.array(x) for x in zip(*rows, strict=True))
@@ -36,7 +36,7 @@ class _Model:
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
-        self.parent = _tree(machine)  # joint of the tree by the body that hangs on it
+        self.parent = _tree(machine)  # joint to the parent, by body
         self.closing = [n for n in machine["joints"] if n not in self.parent.values()]
         spec = mujoco.MjSpec()
         spec.option.gravity = [*machine["gravity"]]
@@ -54,7 +54,7 @@ class _Model:
         return int(self.model.joint(f"{drive['joint']} {drive['measures']}").dofadr[0])
 
     def _add_body(self, name: str) -> None:
-        """A body on its parent, its frame at its centre along world axes as drawn."""
+        """Add a body to its parent; its frame is at its centre along world axes as drawn."""
         joint = self.machine["joints"][self.parent[name]]
         base = joint["moving"] if joint["base"] == name else joint["base"]
         if base not in self._bodies:
@@ -80,7 +80,7 @@ class _Model:
     # --- one instant ------------------------------------------------------------------------------
 
     def at(self, time: float) -> tuple[Floats, Floats, Floats, Floats]:
-        """Points, forces and moments (C, 3) of the joints and forces of the drives (D,)."""
+        """Return points, forces and moments (C, 3) of the joints and forces of the drives (D,)."""
         model, data = self.model, self.data
         laws = [
             CycloidalDrive(0.0, d["to"], self.machine["duration"])
@@ -105,7 +105,10 @@ class _Model:
         return self._forces(J)
 
     def _close(self) -> None:
-        """Newton's method on the passive coordinates."""
+        """Close the loops by Newton's method on the passive coordinates.
+
+        Raises: ArithmeticError if they do not close.
+        """
         for _ in range(MAX_NEWTON_STEPS):
             mujoco.mj_fwdPosition(self.model, self.data)
             if not self.closing:
@@ -119,14 +122,14 @@ class _Model:
             raise ArithmeticError("MuJoCo's loops do not close")
 
     def _place(self, body: str, at: Vector) -> tuple[Floats, int]:
-        """Position of a point of a body as drawn, and the body's number."""
+        """Return the position of a point of a body as drawn, and the body's number."""
         number = self.model.body(self._bodies[body].name).id
         arm = np.subtract(at, self._centre[body])
         rotation = self.data.xmat[number].reshape(3, 3)
         return self.data.xpos[number] + rotation @ arm, number
 
     def _directions(self, joint: JointData) -> Floats:
-        """Directions (k, 3) along which a closing joint keeps its points together."""
+        """Return the directions (k, 3) along which a closing joint keeps its points together."""
         if joint["kind"] == "spherical":
             return np.eye(3)
         _, base = self._place(joint["base"], joint["at"])
@@ -141,7 +144,7 @@ class _Model:
         return np.concatenate(gaps)
 
     def _conditions(self, second: bool) -> tuple[Floats, Floats]:
-        """Jacobian of the closing conditions, and with `second` what their velocities add."""
+        """Return the Jacobian of the closing conditions, and with `second` their velocity terms."""
         model, data = self.model, self.data
         rows, terms = [np.zeros((0, model.nv))], [np.zeros(0)]
         for joint in map(self.machine["joints"].__getitem__, self.closing):
@@ -165,7 +168,9 @@ class _Model:
         return slides, turns
 
     def _forces(self, J: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Forces of closing joints and drives, then MuJoCo's interaction forces."""
+        """Return points, forces and moments of the joints and forces of the drives: first those of
+        closing joints and drives, then MuJoCo's interaction forces.
+        """
         data = self.data
         needed = data.qfrc_inverse.copy()
         data.xfrc_applied[:] = 0.0
@@ -196,7 +201,7 @@ class _Model:
         self.data.xfrc_applied[body] += [*force, *np.cross(arm, force)]
 
     def _interaction(self, body: str, name: str, drives: Floats) -> tuple[Floats, Floats, Floats]:
-        """Wrench of the moving body on the base, without the drives."""
+        """Return point, force and moment of the moving body on the base, without the drives."""
         joint = self.machine["joints"][name]
         number = self.model.body(body).id
         p, _ = self._place(joint["moving"], joint["at"])
@@ -218,7 +223,9 @@ class _Model:
 
 
 def _tree(machine: Machine) -> dict[str, str]:
-    """Joint by which each body hangs on its parent; joints that can be cut are taken last."""
+    """Return the joint that connects each body to its parent; joints that can be cut are
+    used last.
+    """
     names = sorted(machine["joints"], key=lambda n: machine["joints"][n]["kind"] in CUT)
     group = {name: name for name in ("ground", *machine["bodies"])}
     chosen = []
@@ -240,7 +247,7 @@ def _tree(machine: Machine) -> dict[str, str]:
 
 
 def _across(axis: Vector) -> Floats:
-    """Two unit vectors square to an axis, (2, 3)."""
+    """Return two unit vectors perpendicular to an axis, (2, 3)."""
     e = np.array(axis) / np.linalg.norm(axis)
     u = np.cross(np.eye(3)[int(np.abs(e).argmin())], e)
     u /= np.linalg.norm(u)
@@ -248,7 +255,9 @@ def _across(axis: Vector) -> Floats:
 
 
 def _freedoms(joint: JointData, reverse: bool) -> list[tuple[str, bool, Floats]]:
-    """Label, whether it slides, and axis of MuJoCo's joints, from the parent to the body."""
+    """Return the label, whether it slides, and the axis of each of MuJoCo's joints, from the parent
+    to the body.
+    """
     axis = np.array(joint.get("axis", (0.0, 0.0, 1.0)))
     axis = axis / np.linalg.norm(axis)
     angle, travel = ("angle", False, axis), ("travel", True, axis)

@@ -1,6 +1,7 @@
-"""Ten machines in space beside exudyn and MuJoCo: every component of every joint and drive.
+"""Ten machines in space compared with exudyn and MuJoCo: every component of every joint and drive.
 
-`python -m benchmarks.space.peers_space` writes what the peers give to tests/loads/space/peers/.
+`python -m benchmarks.space.peers_space` writes the other codes' results to
+tests/loads/space/peers/.
 """
 
 from __future__ import annotations
@@ -19,14 +20,16 @@ MISSING = (
     "exudyn and mujoco are not installed: "
     ".venv/bin/pip install --require-hashes -r requirements-bench.lock"
 )
-STEPS = 80  # of exudyn from one instant to the next, doubled until its error is small enough
-MAX_ERROR = 1e-7  # of the extrapolated forces, of the largest
-MAX_STEPS = 1280  # beyond, errors of its iteration grow
-MUJOCO_STEPS = (20, 31)  # closed positions from one instant to the next: two paths to the same
+STEPS = 80  # of exudyn between two instants, doubled until its error is small enough
+MAX_ERROR = 1e-7  # of the extrapolated forces, relative to the largest
+MAX_STEPS = 1280  # with more steps, the errors of exudyn's iteration grow
+MUJOCO_STEPS = (20, 31)  # closed positions between two instants: two paths to the same position
 
 
 def peers_space() -> str:
-    """The largest difference of ours from each peer, and of the peers from each other."""
+    """Return the largest differences of ours from each other code, and of the other codes from each
+    other.
+    """
     try:
         results = peers()
     except ModuleNotFoundError:
@@ -57,7 +60,7 @@ def peers_space() -> str:
 
 
 def peers() -> dict[str, dict[str, tuple[PeerForces, float]]]:
-    """Forces of every machine by exudyn and MuJoCo, with their errors."""
+    """Return the forces of every machine by exudyn and MuJoCo, with their errors."""
     return {
         "exudyn": {name: _by_exudyn(name) for name in MACHINES},
         "mujoco": {name: _by_mujoco(name) for name in MACHINES},
@@ -65,7 +68,9 @@ def peers() -> dict[str, dict[str, tuple[PeerForces, float]]]:
 
 
 def _by_mujoco(name: str) -> tuple[PeerForces, float]:
-    """Forces by MuJoCo, and how those of another path to the same positions differ."""
+    """Return the forces by MuJoCo, and their difference from those by another path to the same
+    positions.
+    """
     from benchmarks.space.peers_mujoco import solve
 
     runs = []
@@ -77,7 +82,9 @@ def _by_mujoco(name: str) -> tuple[PeerForces, float]:
 
 
 def _by_exudyn(name: str) -> tuple[PeerForces, float]:
-    """Forces by exudyn, extrapolated to a step of no time, and their change by halved steps."""
+    """Return the forces by exudyn, extrapolated to a step of zero, and their change when steps are
+    halved.
+    """
     from benchmarks.space.peers_exudyn import solve
 
     times, steps = recorded.instants(name), 4 * STEPS
@@ -93,7 +100,9 @@ def _by_exudyn(name: str) -> tuple[PeerForces, float]:
 
 
 def _limit(coarse: PeerForces, fine: PeerForces) -> PeerForces:
-    """Two results of second order, the second with half the step, extrapolated to no step."""
+    """Return two results of second order, the second with half the step, extrapolated to a step of
+    zero.
+    """
     return PeerForces(
         *((4.0 * getattr(fine, k) - getattr(coarse, k)) / 3.0 for k in PeerForces.fields())
     )

@@ -1,4 +1,6 @@
-"""Forces of peers in files, so that tests compare with them where the peers are not installed."""
+"""Forces of other codes in files, so that tests can compare with them where the codes are not
+installed.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,15 @@ HEAD = ("machine", "time", "name", "x", "y", "z", "fx", "fy", "fz", "mx", "my", 
 
 
 def instants(name: str) -> Floats:
-    """Equally spaced times of a machine at which codes are compared, s; the last is at rest."""
+    """Return equally spaced times of a machine, s, at which codes are compared; at the last it is
+    at rest.
+    """
     return np.linspace(0.0, MACHINES[name]()["duration"], INSTANTS + 1)[1:]
 
 
 def write(code: str, results: dict[str, tuple[PeerForces, float]]) -> Path:
-    """Write what a code gives for every machine, with its measured error, to CODE.csv.
+    """Write the result of a code for every machine, with its measured error, to CODE.csv; return
+    the path.
 
     Drives have their force or torque as x.
     """
@@ -46,7 +51,9 @@ def write(code: str, results: dict[str, tuple[PeerForces, float]]) -> Path:
 
 
 def read(code: str, name: str) -> tuple[PeerForces, float]:
-    """What a code gives for a machine at its `instants`, and the code's measured error."""
+    """Return the result of a code for a machine at its `instants`, and the code's
+    measured error.
+    """
     machine = MACHINES[name]()
     with (FOLDER / f"{code}.csv").open(encoding="utf-8") as file:
         rows = [row for row in csv.reader(file) if row[0] == name]

@@ -1,1 +1,1 @@
-"""What all models of a pin share: material, loads, linear solver, equilibrium, results."""
+"""The common parts of all models: material, loads, linear solver, equilibrium, results."""

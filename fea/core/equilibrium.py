@@ -1,17 +1,19 @@
-"""Whether an unconstrained pin can be solved: the imbalance of its loads, and what reacts it.
+"""The equilibrium of an unconstrained pin: the imbalance of its loads, and whether it is solved.
 
-One rule for forces and couples, stated here alone (MIN_WARNED_IMBALANCE, MAX_IMBALANCE). The
-imbalance of the forces is measured by the largest of them; a couple across the axis by that force
-times the length of the pin (or by the largest given moment, if that is more); a torque about the
-axis by the largest torque. Above MIN_WARNED_IMBALANCE there is a warning, above MAX_IMBALANCE the
-pin is not solved; below, its bands share the imbalance (`fea.core.tractions.closing_tractions`).
+There is one rule for forces and couples, stated only here (MIN_WARNED_IMBALANCE, MAX_IMBALANCE).
+The imbalance of the forces is relative to the largest force. A couple across the axis is relative
+to that force times the length of the pin, or to the largest given moment if that is larger. A
+torque about the axis is relative to the largest torque. Above MIN_WARNED_IMBALANCE there is a
+warning; above MAX_IMBALANCE the pin is not solved. Below, its bands share the imbalance
+(`fea.core.tractions.closing_tractions`).
 
-What supports carry is no imbalance (`Carried`). A clamp carries everything, so clamped pins are not
-checked. Lugs of a structure carry forces across the axis, two of them couples too. A lug whose tilt
-has a stiffness, or that is guided, carries couples, as in single shear, unless its link states the
-moment that it brings. Where all lugs are free to tilt, contact has no solution with any couple;
-links that state moments share a small one. Lugs of a structure carry forces along the axis and
-torques about it, too (`fea.support.lugs.axial`); without any, links must be in balance.
+Loads that supports carry are not an imbalance (`Carried`). Clamps carry all loads, so that clamped
+pins are not checked. Lugs of a structure carry forces across the axis; two of them also carry
+couples. A lug whose tilt has a stiffness, or that is guided, carries couples, as in single shear,
+unless its link states the moment that it transmits. Where all lugs are free to tilt, contact has no
+solution with any couple, except that links which state moments share a small one. Lugs of a
+structure also carry axial forces and torques (`fea.support.lugs.axial`); without them, links must
+be in balance.
 """
 
 from __future__ import annotations
@@ -27,23 +29,25 @@ from geometry import PinLike
 from pinbase.arrays import Floats
 from pinbase.keys import key_part, lug_key
 
-# Both limits are chosen by judgement, as parts of the largest force or torque.
-MIN_WARNED_IMBALANCE = 0.01  # less is round-off of numbers that were typed
-MAX_IMBALANCE = 0.1  # more means that a load or a support is missing
-BALANCE_NOISE = 1e-9  # of the largest load, or of what squeezes the pin: smaller ones are zero
-# Of the largest couple: more has no solution in lugs that are all free to tilt.
+# Both limits are chosen by judgement, as fractions of the largest force or torque.
+MIN_WARNED_IMBALANCE = 0.01  # a smaller one is round-off of typed numbers
+MAX_IMBALANCE = 0.1  # a larger one means that a load or a support is missing
+# Fraction of the largest load, or of the force that squeezes the pin, below which an imbalance is
+# zero.
+BALANCE_NOISE = 1e-9
+# Fraction of the largest couple above which lugs that are all free to tilt have no solution.
 MAX_FREE_COUPLE = 1e-6
-# Of the largest couple: what may remain where changing one force is enough.
+# Fraction of the largest force times the length that may remain if changing one force is enough.
 SINGLE_FORCE_TOLERANCE = 1e-6
 
 
 class Carried(NamedTuple):
-    """The loads that supports react besides the bands' small share.
+    """The kinds of load that supports react, in addition to the small imbalance that bands share.
 
     force, couple: across the axis.
-    along: forces and torques along the axis.
-    lugs: whether the pin sits in lugs.
-    moments: whether some of the links state moments across the axis, and share a small couple.
+    along: axial forces and torques.
+    lugs: whether lugs hold the pin.
+    moments: whether some links state moments across the axis, and so share a small couple.
     """
 
     force: bool = False
@@ -60,14 +64,14 @@ NO_SUPPORT = Carried()
 class Balance:
     """The imbalance of the loads, the largest over all instants.
 
-    force: N.
-    couple: N m, about the pin's middle.
-    largest: the largest force in the case, N.
-    refusal: why the pin cannot be solved, or None.
+    force: resultant of the loads, N.
+    couple: about the pin's middle, N m.
+    largest: largest force in the case, N.
+    refusal: reason why the pin cannot be solved; None if it can.
     code: of the refusal.
-    left: force (N), couple across the axis and torque (N m) that no support carries.
-    shares: the same, relative to what the rule measures them by.
-    instant: number of the instant at which the worst of these occurs.
+    left: force, N, couple across the axis and torque, N m, that no support carries.
+    shares: the same, relative to the scales of the rule.
+    instant: number of the instant at which the largest of the shares occurs.
     """
 
     force: float
@@ -90,8 +94,8 @@ def out_of_balance(
 ) -> Balance:
     """The balance of a pin without clamps under its loads.
 
-    density: kg/m^3; with it the pin's own weight and inertia count.
-    carried: what its supports react.
+    density: kg/m^3; if it is given, the pin's own weight and inertia count.
+    carried: kinds of load that the supports react.
     """
     force, couple = _left(pin, loads)
     largest = _largest(loads.forces)
@@ -124,14 +128,14 @@ def out_of_balance(
 
 
 def _left(pin: PinLike, loads: PinLoads) -> tuple[Floats, Floats]:
-    """Resultant of the forces (T, 3) N, and couple about the pin's middle (T, 3) N m."""
+    """The resultant of the forces, (T, 3) N, and the couple about the pin's middle, (T, 3) N m."""
     z = np.array([pin.band(name).middle for name in loads.surfaces]) - sum(pin.ends) / 2.0
     couple = np.cross(z[:, None] * [0.0, 0.0, 1.0], loads.forces) + loads.moments
     return loads.forces.sum(axis=1), couple.sum(axis=1)
 
 
 def centre_of_volume(pin: PinLike) -> float:
-    """z of the centre of volume, m; for a body from a file the middle of its length."""
+    """The z of the centre of volume, m; for a body from a file the middle of its length."""
     profile = pin.profile
     if profile is None:
         return sum(pin.ends) / 2.0
@@ -141,12 +145,17 @@ def centre_of_volume(pin: PinLike) -> float:
 
 
 def _over(left: Floats, scale: float, least: float) -> Floats:
-    """The imbalance (T,) over its scale, zero where it is round-off."""
+    """The imbalance (T,) divided by its scale; zero where it is round-off.
+
+    least: imbalance below which it is round-off, in the unit of the imbalance.
+    """
     return np.where(left > least, left / max(scale, least, np.finfo(float).tiny), 0.0)
 
 
 def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple[str | None, str]:
-    """Why a pin with these relative imbalances is not solved, and the code of the refusal."""
+    """The reason why a pin with these relative imbalances is not solved, None if it is, and the
+    code of the refusal.
+    """
     force, couple, torque = shares
     name = f"pin.{key_part(pin.name)}"
     loose, react = "the pin is not clamped and its loads are not in equilibrium: ", "bands react"
@@ -177,7 +186,7 @@ def _refusal(pin: PinLike, shares: tuple[float, ...], carried: Carried) -> tuple
 
 
 def _structure(pin: PinLike) -> str:
-    """The advice to let a structure hold a pin, by its named segments on which no link bears."""
+    """The advice to let a structure hold the pin at segments on which no link bears."""
     segments = () if pin.profile is None else pin.profile.segments
     idle = [s.name for s in segments if s.name and s.name not in pin.connections]
     lugs = ", ".join(lug_key(pin.name, name) for name in idle)
@@ -190,15 +199,15 @@ def _structure(pin: PinLike) -> str:
 
 
 def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, Floats] | None:
-    """The least change (2,) N of forces across the axis, by surface, that balances an instant.
+    """The smallest changes (2,) N of forces across the axis that balance an instant, by surface.
 
-    One force is changed if that is enough, else the two that need the least change. None where only
-    zero loads, or couples, would do.
+    One force is changed if that is enough, otherwise the two that need the smallest change. The
+    result is None where only zero loads, or couples, would balance the instant.
     """
     force, couple = _left(pin, loads.at(np.array([instant])))
     middle = sum(pin.ends) / 2.0
     left = force[0, :2]
-    first = np.array([couple[0, 1], -couple[0, 0]])  # sum of z F, with the couples that are given
+    first = np.array([couple[0, 1], -couple[0, 0]])  # sum of z F, including the given couples
     z = {name: pin.band(name).middle - middle for name in loads.surfaces}
     now = dict(zip(loads.surfaces, loads.forces[instant, :, :2], strict=True))
     largest = _largest(loads.forces)
@@ -218,7 +227,7 @@ def balancing_forces(pin: PinLike, loads: PinLoads, instant: int) -> dict[str, F
 
 
 def _remains(now: dict[str, Floats], change: dict[str, Floats], largest: float) -> bool:
-    """Whether the loads do not nearly vanish after a change of forces."""
+    """Whether more than a tenth of the largest load remains after a change of forces."""
     after = [force + change.get(name, 0.0) for name, force in now.items()]
     return _largest(np.array(after)) > 0.1 * largest
 

@@ -1,13 +1,13 @@
-"""Pins with a hardened surface: the yield strength at a depth, which all that judge yield take.
+"""Pins with a hardened surface: the yield strength as a function of depth, for all checks of yield.
 
-From the surface down to the case depth a hardened stretch has the strength `surface`, from there on
-the strength `core`: no transition beyond the depth counts, where hardness in fact falls over some
-distance. So the depth is an effective one, to which the material has at least the strength
-`surface`. Where it is measured to a limiting hardness, as the case hardening depth of ISO 18203,
-`surface` is safe if it belongs to that hardness, not to the larger one at the surface itself.
+A hardened stretch has the strength `surface` from the surface down to the case depth, and the
+strength `core` below. The transition beyond this depth, over which hardness falls in fact, does not
+count. The depth is therefore an effective one, to which the material has at least the strength
+`surface`. If it is measured to a limiting hardness, as the case hardening depth of ISO 18203, then
+`surface` is safe if it belongs to that hardness, not to the higher hardness at the surface itself.
 
-Hardened is the outer surface: cylinders, cones, fillets, and shoulders between stretches that are
-hardened alike. Bores and end faces are not; there the core counts.
+The outer surface is hardened: cylinders, cones, fillets, and shoulders within a hardened stretch.
+Bores and end faces are not hardened; there the core counts.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from geometry import ArgumentError, Edge, Pin, meridian
 from pinbase.arrays import Floats, Mask
 
 Part = Literal["case", "core", "unhardened"]
-# Points on the boundary of the core, whose stress is largest there: spacing over the local diameter
-# and over the length of an edge, and how much deeper they lie, of the depth.
+# Points on the boundary of the core, where the stress of the core is largest: their spacing over
+# the smallest diameter and over the length of an edge, and their excess depth over the case depth.
 DIAMETER_SPACING, EDGE_SPACING, DEEPER = 0.01, 1.0 / 16.0, 1e-6
-END_TOLERANCE = 1e-9  # of its length: how far beyond a stretch its ends may lie by round-off
+END_TOLERANCE = 1e-9  # distance beyond the ends of a stretch by round-off, over its length
 
 
 @dataclass(frozen=True)
 class Hardened:
     """A stretch of a pin whose outer surface is hardened.
 
-    start, end: its z, m.
+    start, end: z of its ends, m.
     surface, core: yield strengths, Pa.
     depth: of the case, m.
 
@@ -57,16 +57,18 @@ class Hardened:
             )
 
     def strength(self, depth: Floats) -> Floats:
-        """The yield strength, Pa, at depths (...), m: the one rule of this module."""
+        """The yield strength, Pa, at depths (...), m; the rule is stated only here."""
         return np.where(depth < self.depth, self.surface, self.core)
 
 
 @dataclass(frozen=True)
 class StrengthPart:
-    """A part of a pin of one yield strength, Pa.
+    """A part of a pin that has one yield strength.
 
-    stretches: pairs of z, m, between which it lies.
-    case: the hardened stretch whose case or core it is; None for what is not hardened.
+    strength: Pa.
+    stretches: pairs of z between which the part lies, m.
+    case: the hardened stretch of which the part is the case or the core; None for an unhardened
+    part.
     """
 
     part: Part
@@ -80,7 +82,7 @@ class StrengthPart:
         return self.case.depth if self.part == "core" and self.case else 0.0
 
     def along(self, z: Floats) -> Mask:
-        """Mask (P,) of z, m, in its stretches, both ends included."""
+        """A mask of the z (P,), m, within the stretches of the part, both ends included."""
         z, within = np.asarray(z), np.zeros(len(z), dtype=bool)
         for a, b in self.stretches:
             near = END_TOLERANCE * (b - a)
@@ -88,7 +90,7 @@ class StrengthPart:
         return within
 
     def holds(self, pin: Pin, points: Floats) -> Mask:
-        """Mask (P,) of the points (P, 2), r and z in m, of a pin that belong to the part."""
+        """A mask of the points (P, 2), r and z in m, of a pin that belong to the part."""
         out = self.along(points[:, 1])
         if self.case is not None and out.any():
             depth = depth_below(hardened_edges(pin, self.case), points[out])
@@ -99,9 +101,9 @@ class StrengthPart:
 def strength_parts(
     hardened: tuple[Hardened, ...], strength: float | None, length: float
 ) -> tuple[StrengthPart, ...]:
-    """The parts of a pin with hardened stretches; none without any.
+    """The parts of a pin with hardened stretches; empty without such stretches.
 
-    strength: yield strength of what is not hardened, Pa; without one it is not judged.
+    strength: yield strength of the unhardened rest, Pa; None if that is not judged.
     length: of the pin, m.
     """
     out = []
@@ -121,16 +123,17 @@ def strength_parts(
 
 def linear_strength(parts: tuple[StrengthPart, ...], radius: float) -> float:
     """The stress at the surface, Pa, at which a pin yields somewhere under a stress that falls
-    linearly to zero on the axis; on the safe side, as its sections differ.
+    linearly to zero on the axis.
 
-    radius: its largest, m, where the stress falls least down to a core.
+    radius: largest radius of the pin, m. The stress falls least down to the core there, so that the
+    result is safe for all sections.
     """
     return min(part.strength * radius / (radius - part.least_depth) for part in parts)
 
 
 @lru_cache(64)
 def hardened_edges(pin: Pin, case: Hardened) -> tuple[Edge, ...]:
-    """The edges of the section's outer surface within a hardened stretch."""
+    """The edges of the outer surface of the pin's section within a hardened stretch."""
     edges = meridian(pin)
     names = [edge.name for edge in edges]
     outer = edges[names.index("start") + 1 : names.index("end")]
@@ -138,14 +141,14 @@ def hardened_edges(pin: Pin, case: Hardened) -> tuple[Edge, ...]:
 
 
 def depth_below(edges: tuple[Edge, ...], points: Floats) -> Floats:
-    """The distance (P,), m, of points (P, 2), r and z in m, to the nearest of some edges."""
+    """The distance (P,), m, of points (P, 2), r and z in m, from the nearest edge."""
     far = np.full(len(points), np.inf)
     return np.asarray(np.min([far, *(edge.distance(points) for edge in edges)], axis=0))
 
 
 def core_boundary(pin: Pin, hardened: tuple[Hardened, ...]) -> Floats:
-    """Points (P, 2), r and z in m, at which the core begins, at the least distance of its depth
-    from all of the hardened surface.
+    """The points (P, 2), r and z in m, at which the core begins: the case depth away from the
+    nearest point of the hardened surface.
     """
     out = [np.zeros((0, 2))]
     for case in hardened:
@@ -160,6 +163,8 @@ def core_boundary(pin: Pin, hardened: tuple[Hardened, ...]) -> Floats:
 
 
 def _inwards(edge: Edge, depth: float, pin: Pin) -> Floats:
-    """Points (P, 2), m, along an edge, moved into the pin, which is to its left, by a depth, m."""
+    """The points (P, 2), m, along an edge, moved into the pin, to the left of the edge, by a depth,
+    m.
+    """
     step = min(DIAMETER_SPACING * pin.smallest_diameter, EDGE_SPACING * edge.length)
     return edge.beside(np.linspace(0.0, 1.0, math.ceil(edge.length / step) + 1), depth)

@@ -1,7 +1,7 @@
-"""Sparse direct solution of symmetric systems: factor once, solve many times.
+"""Sparse direct solution of symmetric systems: factorise once, solve many times.
 
-CHOLMOD factors, or SuperLU where its binding is missing; METIS orders the unknowns, or the solver
-itself where that is missing.
+CHOLMOD factorises, or SuperLU where the binding of CHOLMOD is missing. METIS orders the unknowns,
+or the solver itself where METIS is missing.
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ if TYPE_CHECKING:
 
 Solve = Callable[[Floats], Floats]
 
-# Relative change of the solution by one more step of iterative refinement: an estimate of round-off
-# in the matrix times its condition. Stresses are off by twice that. Measured on clamped pins: 2e-10
-# at a length of 10 diameters, 4e-7 at 200, 1e-4 at 1000, 2e-3 at 2000; 1 on an unconstrained pin.
+# Largest relative change of the solution by one step of iterative refinement. The change estimates
+# the round-off of the matrix times its condition number; the error of stresses is twice as large.
+# Measured on clamped pins: 2e-10 at a length of 10 diameters, 4e-7 at 200, 1e-4 at 1000, 2e-3 at
+# 2000; 1 on an unconstrained pin.
 MAX_REFINEMENT_CHANGE = 1e-3
-# Residual over |K| |x| + |b|: 1e-16 with a working solver, whatever the matrix.
+# Largest residual over |K| |x| + |b|, which is 1e-16 with a working solver, whatever the matrix.
 MAX_BACKWARD_ERROR = 1e-10
 LOWER_FACTOR, PERMUTATION = 4, 7  # parts of a solution, by cvxopt's numbers
 INDEFINITE_MESSAGE = (
@@ -42,12 +43,13 @@ class SolveError(CodedError, ArithmeticError):
 
 
 class Analysis:
-    """The symbolic analysis of a symmetric matrix's pattern, for all matrices of that pattern.
+    """The symbolic analysis of a symmetric sparsity pattern, for all matrices with that pattern.
 
-    It is the elimination order and the pattern of the factor.
+    It consists of the elimination order and the pattern of the factor.
     pattern: csr, both halves.
-    node: (n,) node of each unknown, for an order by nested dissection of the nodes, the best for
-    solids; otherwise an approximate minimum degree, as good for sections.
+    node: node of each unknown, (n,), for an order by nested dissection of the nodes, the best order
+    for solids. Without it the order is that of approximate minimum degree, which is as good for
+    sections.
     """
 
     def __init__(self, pattern: sp.csr_matrix, node: Ints | None = None) -> None:
@@ -56,15 +58,17 @@ class Analysis:
         self._factor = self._cholmod.factor if self._cholmod else partial(_superlu, order=order)
 
     def factorize(self, K: sp.csr_matrix, check: bool = True, kept: bool = False) -> Solve:
-        """A function that solves K x = b for b (n,) or (n, k).
+        """Return a function that solves K x = b for b (n,) or (n, k).
 
-        It must not be called after another matrix has been factored, unless the factor is kept.
-        check: whether it checks what it returns. kept: whether it has a factor of its own, which
-        takes a part of a factorisation more, and its memory.
+        The function must not be called after another matrix has been factorised, unless the factor
+        is kept.
+        check: whether the function checks its solutions.
+        kept: whether the function has a factor of its own, which takes more time (a part of a
+        factorisation) and memory.
 
-        Raises: SolveError when K is not positive definite (an unconstrained body), and from the
-        returned function when a solution does not satisfy the equations, or when K is so nearly
-        singular that round-off changes it by more than a thousandth.
+        Raises: SolveError where K is not positive definite (an unconstrained body). The returned
+        function raises it where a solution does not satisfy the equations, or where K is so nearly
+        singular that round-off changes the solution by more than a thousandth.
         """
         solve = self._factor(K, kept=True) if kept else self._factor(K)
         if not check:
@@ -78,9 +82,12 @@ class Analysis:
         return checked
 
     def work(self, K: sp.csr_matrix, b: Floats) -> Floats:
-        """The works b^T K^-1 b (k, k), symmetric, of forces b (n, k).
+        """The work b^T K^-1 b of forces b (n, k) on the displacements by each other, (k, k),
+        symmetric.
 
-        With K = L L^T it takes L^-1 b, half of a solution. Raises: as `factorize`.
+        With K = L L^T only L^-1 b is needed, which is half of a solution.
+
+        Raises: SolveError as `factorize`.
         """
         solve = self.factorize(K)
         if self._cholmod is None:
@@ -94,10 +101,10 @@ class Analysis:
 def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> None:
     """Check a solution by its backward error and by one step of iterative refinement.
 
-    The residual alone is no criterion: on a slender body round-off in large displacements of little
-    energy makes it as large as the load, although the solution is right. Several solutions are
-    checked in one sum that has all their errors, each scaled to a load of one to two, so that
-    opposite errors do not cancel.
+    The residual alone is not a criterion: on a slender body, round-off in large displacements of
+    little energy makes it as large as the load, although the solution is right. Several solutions
+    are checked together by a weighted sum. Each is scaled to a load of one to two, with different
+    weights, so that opposite errors do not cancel.
 
     Raises: SolveError.
     """
@@ -107,7 +114,7 @@ def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> Non
         x, b = x @ weight, b @ weight
     left = b - K @ x
     size, residual = float(np.linalg.norm(x)), float(np.linalg.norm(left))
-    stiffness = float(K.data.max())  # on the diagonal, and at most the norm
+    stiffness = float(K.data.max())  # the largest diagonal entry, which is at most the norm
     most = stiffness * size + float(np.linalg.norm(b))
     backward = residual / most if most > 0.0 else residual
     if not backward < MAX_BACKWARD_ERROR:
@@ -130,15 +137,16 @@ def _check_solution(K: sp.csr_matrix, x: Floats, b: Floats, solve: Solve) -> Non
 
 
 def factorize(K: sp.csr_matrix, node: Ints) -> Solve:
-    """Analysis and factorisation of one matrix."""
+    """Analyse and factorise one matrix; return the function that solves (Analysis.factorize)."""
     return Analysis(K, node).factorize(K)
 
 
 class ConstrainedSystem:
-    """Systems of equations with one matrix pattern, of whose unknowns any may be zero.
+    """Systems of equations with one sparsity pattern, in which any unknowns may be constrained to
+    zero.
 
-    K: csr, both halves.
-    node: as for Analysis.
+    K: matrix with the pattern, csr, both halves.
+    node: as in Analysis.
     """
 
     def __init__(self, K: sp.csr_matrix, node: Ints | None = None) -> None:
@@ -146,40 +154,44 @@ class ConstrainedSystem:
         self._diagonal = np.flatnonzero(K.indices == self._row)
         self._zeroed: dict[bytes, Ints] = {}
         self._analysis = Analysis(K, node)
-        self._lock = threading.Lock()  # between factor and solution
+        self._lock = threading.Lock()  # no other factorisation comes before the solution
 
     def solve(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
-        """Unknowns (n, K) under forces (n, K), zero where `free` (n,) is 0; K is changed."""
+        """The unknowns (n, k) under forces (n, k), zero where `free` (n,) is 0; K is modified."""
         held = self._constrained(K, free)
         with self._lock:
             return self._analysis.factorize(held)(forces * free[:, None])
 
     def work(self, K: sp.csr_matrix, free: Floats, forces: Floats) -> Floats:
-        """The works (K, K) of forces (n, K) on the displacements under each other; K is changed."""
+        """The work (k, k) of forces (n, k) on the displacements by each other; K is modified."""
         held, forces = self._constrained(K, free), forces * free[:, None]
         with self._lock:
             return self._analysis.work(held, forces)
 
     def kept(self, K: sp.csr_matrix, free: Floats) -> Solve:
-        """A function that solves as `solve`, also after other matrices; K is changed."""
+        """Return a function that solves like `solve`, also after other matrices have been
+        factorised; K is modified.
+        """
         with self._lock:
             solve = self._analysis.factorize(self._constrained(K, free), kept=True)
         return lambda forces: solve(forces * free[:, None])
 
     def factorize(self, K: sp.csr_matrix, free: Floats) -> Solve:
-        """A function that solves for forces that are zero on constrained unknowns, unchecked."""
+        """Return a function that solves, without a check, for forces that are zero on constrained
+        unknowns; K is modified.
+        """
         return self._analysis.factorize(self._constrained(K, free), check=False)
 
     def _constrained(self, K: sp.csr_matrix, free: Floats) -> sp.csr_matrix:
-        """K with zero rows and columns for constrained unknowns but for their diagonal."""
+        """K with rows and columns of constrained unknowns set to zero, except for the diagonal."""
         fixed = self._diagonal[free == 0.0]
         largest = K.data.max()
         key = free.tobytes()
-        if key not in self._zeroed:  # few harmonics differ in what they fix
+        if key not in self._zeroed:  # most harmonics have the same constraints
             self._zeroed[key] = np.flatnonzero(free[self._row] * free[K.indices] == 0.0)
         K.data[self._zeroed[key]] = 0.0
-        # Any positive diagonal does, since their forces are zero; the largest leaves the scaling
-        # alone.
+        # Any positive diagonal will do, since the forces on constrained unknowns are zero. The
+        # largest entry does not affect the scaling of the matrix.
         K.data[fixed] = largest
         return K
 
@@ -201,13 +213,13 @@ class _Cholmod:
         pattern = pattern if pattern.has_sorted_indices else pattern.sorted_indices()
         count = np.diff(pattern.indptr).astype(np.int64)
         row = np.repeat(np.arange(len(count)), count)
-        self._upper = np.flatnonzero(pattern.indices >= row)  # by rows: the lower half by columns
+        self._upper = np.flatnonzero(pattern.indices >= row)  # equals the lower half by columns
         lower = (
             matrix(pattern.indices.take(self._upper).astype(np.int64)),
             matrix(row.take(self._upper)),
         )
         self._matrix = spmatrix(1.0, *lower, pattern.shape)
-        cholmod.options["supernodal"] = 2  # L L^T, which fails on a matrix that is not definite
+        cholmod.options["supernodal"] = 2  # L L^T, which fails if the matrix is not definite
         self._order = () if order is None else (matrix(order),)
         self._factor = cholmod.symbolic(self._matrix, *self._order)
 
@@ -230,7 +242,7 @@ class _Cholmod:
         return solve
 
     def half(self, b: Floats) -> Floats:
-        """L^-1 b (n, k), rows in the order of elimination, of the matrix factored last."""
+        """L^-1 b (n, k) for the matrix factorised last, with rows in the order of elimination."""
         from cvxopt import cholmod, matrix
 
         x = matrix(np.asfortranarray(b))
@@ -240,9 +252,8 @@ class _Cholmod:
 
 
 def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
-    """A nested-dissection order of the unknowns by the graph of their nodes, or None.
-
-    None where METIS is missing.
+    """The nested-dissection order of the unknowns by the graph of their nodes; None where METIS is
+    missing.
     """
     if not has_metis():
         return None
@@ -257,7 +268,7 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
     graph.setdiag(0)
     graph.eliminate_zeros()
     adjacency = pymetis.CSRAdjacency(graph.indptr, graph.indices)
-    # METIS draws random numbers, and takes SIGTERM for an error of its own.
+    # METIS draws random numbers, and treats SIGTERM as an error of its own.
     with GMSH_LOCK, blocked():
         order = np.asarray(pymetis.nested_dissection(adjacency)[0])
     rank = np.empty(len(order), dtype=np.int64)
@@ -266,10 +277,10 @@ def _dissection(K: sp.csr_matrix, node: Ints) -> Ints | None:
 
 
 def _superlu(K: sp.csr_matrix, order: Ints | None = None, kept: bool = True) -> Solve:
-    """A function that solves with SuperLU's factors of K, which are always kept.
+    """Return a function that solves with SuperLU's factors of K, which are always kept.
 
-    Its pivots may have any sign, so of a matrix that is not definite it reports only what a
-    negative diagonal shows; the rest is found by whoever checks the solution.
+    SuperLU accepts pivots of any sign, so that a matrix that is not definite is reported only if
+    its diagonal shows it; otherwise the check of the solution must find it.
     """
     from scipy.sparse.linalg import splu
 

@@ -1,4 +1,4 @@
-"""Values at nodes or other points from values at samples inside elements."""
+"""The recovery of values at nodes or other points from values at samples inside elements."""
 
 from __future__ import annotations
 
@@ -8,20 +8,22 @@ from scipy.spatial import cKDTree
 
 from pinbase.arrays import Floats, Ints
 
-# Samples to which a quadratic polynomial, of six terms, is fitted; `python -m benchmarks recovery`
-# measures its error.
+# Number of samples to which a quadratic polynomial, with six terms, is fitted; `python -m
+# benchmarks recovery` measures the error.
 FIT_SAMPLES = 24
 TREE_SAMPLE_RATIO = 4  # samples per point above which a quickly built tree saves time
-_REGULARISATION = 1e-10  # of the number of samples, where these leave slope or curvature open
+# Relative regularisation, for samples that do not determine slope or curvature.
+_REGULARISATION = 1e-10
 
 
 def nodal_extrapolation(elements: Ints, samples: Floats, nodes: Floats) -> sp.csr_matrix:
-    """Matrix (N, M Q) that takes values at Q samples of each element to nodes.
+    """The matrix (N, M Q) that maps values at Q samples of each element to the nodes.
 
-    Each element's values are extrapolated linearly to its nodes and averaged there.
-    elements: (M, k) node numbers.
-    samples: (d, Q), nodes: (d, k), where samples and nodes are in the reference element. Q
-    = d + 1, or 1 where values are constant in an element.
+    The values of each element are extrapolated linearly to its nodes, and averaged at each node.
+    elements: node numbers, (M, k).
+    samples: of the reference element, (d, Q), with Q = d + 1, or Q = 1 for values that are constant
+    in an element.
+    nodes: of the reference element, (d, k).
     """
     if samples.shape[1] == 1:
         extend = np.ones((nodes.shape[1], 1))
@@ -37,14 +39,14 @@ def nodal_extrapolation(elements: Ints, samples: Floats, nodes: Floats) -> sp.cs
 
 
 def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
-    """Matrix (P, S) that takes values at samples (S, 2) to points (P, 2) by local least squares.
+    """The matrix (P, S) that maps values at samples (S, 2) to points (P, 2) by local least squares.
 
-    A quadratic polynomial is fitted to the nearest samples of each point. Their weights fall with
-    distance to nothing for the last one, so that it does not matter which of several equally
-    distant samples that is.
+    A quadratic polynomial is fitted to the nearest samples of each point. The weights fall with the
+    distance to zero for the farthest sample, so that it does not matter which of several equally
+    distant samples is the last.
 
     Source: Zienkiewicz & Zhu, Int. J. Numer. Meth. Engng 33 (1992) 1331, whose patches are the
-    elements round a node instead.
+    elements around a node instead.
     """
     if not len(points):
         return sp.csr_matrix((0, len(samples)))
@@ -60,7 +62,7 @@ def continuation(samples: Floats, points: Floats) -> sp.csr_matrix:
 
 
 def nearest(samples: Floats, points: Floats) -> Ints:
-    """Numbers (P, C) of the FIT_SAMPLES (or all) samples (S, 2) nearest to points (P, 2)."""
+    """The numbers (P, C) of the FIT_SAMPLES (or all) samples (S, 2) nearest to points (P, 2)."""
     count = min(FIT_SAMPLES, len(samples))
     # A balanced tree takes longer to build and less to query.
     balanced = TREE_SAMPLE_RATIO * len(points) > len(samples)
@@ -69,12 +71,12 @@ def nearest(samples: Floats, points: Floats) -> Ints:
 
 
 def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
-    """Weights (..., S) of samples in the value, at one place, of the quadratic fitted to them.
+    """The weights (..., S) of samples in the value, at one point, of a quadratic fitted to them.
 
-    Where several quadratics fit equally (long thin elements have their nearest samples in a row),
-    the one with the least slope and curvature counts.
-    offsets: (..., S, 2) of the samples from the place.
-    confidence: (..., S) weight of each in the fit.
+    Where several quadratics fit equally well (the nearest samples in long thin elements lie in a
+    row), the one with the least slope and curvature is taken.
+    offsets: of the samples from the point, (..., S, 2).
+    confidence: weight of each sample in the fit, (..., S).
     """
     x, y = np.moveaxis(offsets, -1, 0)
     largest = np.maximum(*(np.abs(part).max(axis=-1, keepdims=True) for part in (x, y)))
@@ -84,7 +86,7 @@ def fit_weights(offsets: Floats, confidence: Floats) -> Floats:
     for k, term in enumerate((x, y, x * x, y * x, y * y), 1):
         np.multiply(term, confidence, out=terms[..., k, :])
     form = terms @ terms.swapaxes(-2, -1)
-    # Regularised normal equations; one step of refinement then removes the bias of the
+    # The normal equations are regularised. One step of refinement then removes the bias of the
     # regularisation.
     definite = form + _REGULARISATION * form[..., :1, :1] * np.diag([0.0, 1, 1, 1, 1, 1])
     one = np.broadcast_to(np.eye(6)[:, :1], (*form.shape[:-1], 1))

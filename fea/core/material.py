@@ -16,17 +16,17 @@ from pinbase.arrays import Floats
 class Material:
     """An isotropic linear-elastic material with its strengths.
 
-    youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate ones.
+    youngs_modulus, strengths: Pa; shear_strength and bearing_strength are ultimate strengths.
     density: kg/m^3.
-    thermal_expansion: mean coefficient, 1/K.
+    hardening: pairs of equivalent plastic strain and yield stress, Pa; linear between these points
+    from the yield strength on, and constant after the last.
     ultimate_strain: total strain at the ultimate strength.
-    hardened: stretches of a pin whose surface is hardened, in the order of z. The yield strength is
-    then that of the weakest core or of what is not hardened, for all that takes one alone.
-    unhardened: the yield strength of what is not hardened, Pa, beside such stretches.
-    strength_range: between which the yield strength may lie, Pa, where that is stated.
+    hardened: stretches of a pin whose surface is hardened, in order of z. The yield strength is
+    then that of the weakest core or of the unhardened rest, for all uses of a single strength.
+    unhardened: yield strength of the rest beside such stretches, Pa.
     failure_strain: equivalent plastic strain at which a lug breaks.
-    hardening: equivalent plastic strains and yield stresses (Pa) there, linear between them from
-    the yield strength on and constant after the last.
+    thermal_expansion: mean coefficient, 1/K.
+    strength_range: lower and upper end of the yield strength, Pa, where stated.
 
     Raises: ArgumentError outside -1 < poisson_ratio < 0.5, for a modulus that is not positive and
     finite, and for hardening whose strains do not increase or whose stresses decrease.
@@ -49,8 +49,10 @@ class Material:
     strength_range: tuple[float, float] | None = None
 
     def at_end(self, end: int) -> Material:
-        """The material at the lower (0) or upper (1) end of the range of its yield strength, if it
-        has one. The stresses of its hardening change in the same proportion.
+        """The material at the lower (0) or upper (1) end of the range of its yield strength; the
+        material itself without a range.
+
+        The stresses of its hardening change in the same proportion.
         """
         if self.strength_range is None:
             return self
@@ -61,7 +63,7 @@ class Material:
 
     @property
     def elastic_part(self) -> Material:
-        """The material by what linear stress depends on alone, without a name."""
+        """The material with only the properties on which linear stress depends, without a name."""
         return Material("", self.youngs_modulus, self.poisson_ratio, self.density)
 
     def __post_init__(self) -> None:
@@ -89,22 +91,22 @@ class Material:
         return all(a < b and s <= t < np.inf for (a, s), (b, t) in pairwise(points))
 
     def strength_parts(self, length: float) -> tuple[StrengthPart, ...]:
-        """The parts of a pin of this length (m) with hardened stretches; none without any."""
+        """The parts of a pin of a length (m) with hardened stretches; empty without these."""
         return strength_parts(self.hardened, self.unhardened, length)
 
     @property
     def lame(self) -> tuple[float, float]:
-        """Lame's lambda and mu (the shear modulus), Pa."""
+        """The Lame constants lambda and mu (the shear modulus), Pa."""
         E, nu = self.youngs_modulus, self.poisson_ratio
         return E * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), E / (2.0 * (1.0 + nu))
 
     @property
     def plane_compliance(self) -> float:
-        """Compliance in plane strain, (1 - nu^2) / E, 1/Pa."""
+        """The compliance in plane strain, (1 - nu^2) / E, 1/Pa."""
         return (1.0 - self.poisson_ratio**2) / self.youngs_modulus
 
     def stress(self, strain: Floats) -> Floats:
-        """Stress (..., 6) in Pa from strain (..., 6): xx, yy, zz, yz, xz, xy with tensor shears."""
+        """The stress (..., 6), Pa, of strain (..., 6): xx, yy, zz, yz, xz, xy, tensor shears."""
         lam, mu = self.lame
         stress = 2.0 * mu * strain
         stress[..., :3] += lam * strain[..., :3].sum(axis=-1, keepdims=True)

@@ -1,4 +1,4 @@
-"""The maxima of one case on successive meshes, and what they say about its error."""
+"""The maxima of one load case on successive meshes, and the error that they show."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from fea.core.pin_loads import PinLoads
 
 @dataclass(frozen=True)
 class MeshHistory:
-    """The meshes of one case so far, from coarse to fine.
+    """The meshes of one load case so far, from coarse to fine.
 
-    seconds: solution time of each.
-    meshes: how they are refined.
-    first: how many meshes of a run are coarser than the first of these.
+    results: maximum on each mesh.
+    seconds: solution time of each mesh, s.
+    meshes: refinement of the sequence.
+    first: number of meshes of a run that are coarser than the first of these.
     """
 
     pin: str
@@ -33,7 +34,7 @@ class MeshHistory:
 
     @property
     def history(self) -> tuple[Refinement, ...]:
-        """Maxima outside the singular zones, mesh by mesh."""
+        """The maxima outside the singular zones, mesh by mesh."""
         return tuple(
             Refinement(result.unknowns, result.maximum, spent)
             for result, spent in zip(self.results, self.seconds, strict=True)
@@ -48,19 +49,19 @@ class MeshHistory:
 
     @property
     def error(self) -> float:
-        """Estimated error of the last maximum, Pa."""
+        """The estimated error of the last maximum, Pa."""
         return self.parts.total
 
     @property
     def parts(self) -> ErrorParts:
         """The parts of the error of the last maximum.
 
-        That of the mesh follows from the sequence of meshes, but is never less than the scatter
+        The part of the mesh follows from the sequence of meshes, but is never less than the scatter
         with the positions of nodes.
         """
         last = self.results[-1]
         if len(self.results) == 1:
-            return ErrorParts(last.maximum)  # as large as the value
+            return ErrorParts(last.maximum)  # one mesh shows no error, so that all is uncertain
         mesh = self._of_mesh(last)
         return ErrorParts(mesh, last.between, last.left_out, truncation=last.truncated)
 
@@ -71,7 +72,7 @@ class MeshHistory:
 
     @property
     def relative(self) -> float:
-        """The error over the maximum."""
+        """The error divided by the maximum."""
         largest = self.results[-1].maximum
         return self.error / largest if largest else 0.0
 
@@ -87,11 +88,11 @@ class MeshHistory:
 
     @property
     def excluded(self) -> tuple[float, float] | None:
-        """The maximum outside half and twice the excluded distance, Pa, where stress is larger in
-        an excluded zone; None elsewhere.
+        """The bounds of the maximum outside half and twice the excluded distance, Pa, where stress
+        is larger in an excluded zone; None elsewhere.
 
-        Both are wider by their change from the mesh before: so near to the zone they are known less
-        well than the maximum.
+        Both are widened by their change from the mesh before, since so near to the singularity they
+        are less accurate than the maximum.
         """
         last = self.results[-1]
         if not last.governed:
@@ -104,5 +105,5 @@ class MeshHistory:
         return low, high
 
     def known(self, tolerance: float) -> bool:
-        """Return whether the error is within `tolerance`, relative."""
+        """Return whether there are enough meshes and the error is within a relative tolerance."""
         return len(self.results) >= self.meshes.min_meshes and self.relative <= tolerance

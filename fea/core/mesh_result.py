@@ -1,4 +1,4 @@
-"""The result of one mesh in one case, from which the verdict is judged."""
+"""The result of one mesh in one load case, from which the verdict follows."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ from pinbase.arrays import Floats
 
 Point = tuple[float, float, float]
 
-# Of a feature: a singularity governs if the stress at this distance is the largest
+# Fraction of the size of a feature: a singularity governs if the stress farther away than this is
+# larger than that outside the zones.
 FEATURE_READING_DISTANCE = 0.1
 
 
 def at_angle(place: Floats | tuple[float, float], angle: float) -> Point:
-    """The point (x, y, z), m, at a place (r, z), m, of the half plane at an angle, rad."""
+    """The point (x, y, z), m, at (r, z), m, in the half plane at an angle, rad."""
     r, z = place
     return float(r * np.cos(angle)), float(r * np.sin(angle)), float(z)
 
@@ -26,9 +27,10 @@ def at_angle(place: Floats | tuple[float, float], angle: float) -> Point:
 class SingularIntensity:
     """The intensity of a singularity, by which notches are judged.
 
-    along: von Mises stress on the free surface is `along` * distance^-exponent close to it, Pa
-    m^exponent, with the exponent of theory.
-    notch: notch stress intensity factor, of a corner between free surfaces (fea.singular.williams).
+    along: factor of the von Mises stress on the free surface close to the singularity, `along` *
+    distance^-exponent, Pa m^exponent.
+    exponent: theoretical exponent.
+    notch: notch stress intensity factor of a corner between free surfaces (fea.singular.williams).
     """
 
     along: Annotated[float, "strength"]
@@ -37,7 +39,7 @@ class SingularIntensity:
 
     @property
     def dimension_of(self) -> dict[str, str]:
-        """The dimension of a strength (pinbase.records.in_units)."""
+        """The dimension of an intensity, by the exponent (pinbase.records.in_units)."""
         return {"strength": f"stress length^{self.exponent!r}"}
 
 
@@ -46,11 +48,11 @@ class ZoneMaximum:
     """The largest stress in the zone of a singularity.
 
     maximum: largest von Mises stress in the zone, Pa, which only shows how fine the mesh is.
-    felt: the largest farther away than FEATURE_READING_DISTANCE of its feature, Pa.
+    felt: largest von Mises stress in the zone farther from the singularity than
+    FEATURE_READING_DISTANCE times its feature, Pa.
     location: (x, y, z) of the maximum, m.
-    exponent: measured exponent of the growth of stress, None where it could not be measured.
-    acts: false where only other cases of the pin load the singularity, so that stress is bounded
-    there.
+    exponent: measured exponent of the growth of stress; None where it could not be measured.
+    acts: false if only other cases of the pin load the singularity, so that stress is bounded.
     strength: intensity of the singularity, where the exponent was measured.
     """
 
@@ -64,24 +66,24 @@ class ZoneMaximum:
 
 @dataclass(frozen=True)
 class MeshMaximum:
-    """The maximum of one mesh in one case.
+    """The maximum of one mesh in one load case.
 
-    maximum: largest von Mises stress, Pa, outside all singularities, at `location` (m) at the
-    governing `instant`.
-    singularities: the maximum inside each of them.
-    scatter: scatter of the maximum from the mesh alone, where it was measured, Pa.
-    left_out: how much the truncated harmonics of a bearing pressure may change the maximum, Pa.
-    between: how much higher the maximum may be between two instants, Pa.
-    high: points (r, z) of a section, m, where a finer mesh may find the maximum; local_high: the
-    same about cuts, (x, y, z).
-    truncated: how much the ends of a local solid may change the maximum, and the effect of other
-    local solids (beside), Pa.
-    quiet: fillets, as numbers of corners, where no finer mesh will find the maximum
+    maximum: largest von Mises stress outside all zones of singularities, Pa, at `location` (m) at
+    the governing `instant`.
+    singularities: the maximum inside each zone.
+    scatter: scatter of the maximum with the mesh, where it was measured, Pa.
+    left_out: possible change of the maximum by truncated harmonics of a bearing pressure, Pa.
+    high: points (r, z) of a section where a finer mesh may find the maximum, m.
+    local_high: the same around cuts, (x, y, z), m.
+    truncated: possible change of the maximum by the ends of a local solid, Pa.
+    beside: effect of other local solids on the maximum, Pa.
+    quiet: numbers of the corners of fillets where no finer mesh will find the maximum
     (fea.harmonic.quiet_corners).
-    interval: the maximum if half and twice the distance is excluded at the governing zones, Pa;
-    None if no zone governs.
+    between: possible rise of the maximum between two instants, Pa.
+    interval: the maximum with half and twice the distance excluded at the governing zones, Pa; None
+    if no zone governs.
+    at_once: largest number of unknowns that are solved together; 0 for all.
     energy: strain energy under any of the case's loads.
-    at_once: the most unknowns that are solved together, 0 for all.
     """
 
     unknowns: int
@@ -104,7 +106,7 @@ class MeshMaximum:
     @property
     def governed(self) -> tuple[ZoneMaximum, ...]:
         """The zones in which stress is larger than outside, so that the maximum depends on the
-        excluded distance.
+        excluded distance of these zones.
         """
         return tuple(s for s in self.singularities if s.acts and s.felt > self.maximum)
 

@@ -1,4 +1,4 @@
-"""The interface of the models: from loads on a pin to its stress, on one mesh after another."""
+"""The interface of the models, which compute stress from loads on successive meshes of a pin."""
 
 from __future__ import annotations
 
@@ -16,13 +16,15 @@ from geometry import PinLike
 
 @dataclass(frozen=True)
 class MeshSequence:
-    """The refinement of a model's meshes, and all that is known of them before one is solved.
+    """The refinement of a model's meshes, and their properties that are known in advance.
 
-    ratio: element size of a mesh over that of the next. growth: unknowns grow as ratio^growth.
-    max_meshes, max_unknowns: where a sequence ends. scatter: of the maximum on the first mesh with
-    the positions of its nodes, relative; it falls with the square of the element size. min_order:
-    the lowest order of convergence of the maximum. min_meshes: before a maximum can be converged,
-    since fewer agree by chance.
+    ratio: element size of a mesh over that of the next.
+    growth: exponent with which the number of unknowns grows, as ratio^growth.
+    max_meshes, max_unknowns: limits at which a sequence ends.
+    scatter: relative scatter of the maximum with the positions of nodes on the first mesh; it falls
+    with the square of the element size.
+    min_order: lowest order of convergence of the maximum.
+    min_meshes: number of meshes before a maximum can be converged, since fewer may agree by chance.
     """
 
     ratio: float
@@ -34,19 +36,22 @@ class MeshSequence:
     min_meshes: int = 3
 
     def unknowns_after(self, unknowns: int) -> float:
-        """Unknowns of the mesh that follows one with `unknowns`, roughly."""
+        """The approximate number of unknowns of the mesh after one with `unknowns`."""
         grown: float = self.ratio**self.growth
         return unknowns * grown
 
 
 @dataclass(frozen=True)
 class MeshProblem:
-    """A pin under loads, as a model takes it.
+    """A pin under loads, in the form that models take.
 
-    clamps: constrained surfaces, by the pin's names. cases: of which all unit loads are solved.
-    zones: of unbounded stress in any of the cases; acting: those of each case, all by default.
-    distance: excluded around zones, as a fraction of the local diameter. tolerance: of the maximum,
-    relative. memory: limit in MB, by default most of the free memory.
+    clamps: constrained surfaces, by the pin's names.
+    cases: loads of all cases, whose unit loads are solved.
+    zones: zones of unbounded stress in any of the cases.
+    acting: for each case, the zones that its loads make singular; all zones by default.
+    distance: excluded around singularities, as a fraction of the local diameter.
+    tolerance: of the maximum, relative.
+    memory: limit, MB; by default most of the free memory.
     """
 
     pin: PinLike
@@ -60,38 +65,44 @@ class MeshProblem:
     memory: float | None = None
 
     def zones_of(self, case: str) -> tuple[Zone, ...]:
-        """Zones that the loads of one case make singular."""
+        """The zones that the loads of one case make singular."""
         return self.acting.get(case, self.zones)
 
 
 class MeshSolution(Protocol):
-    """Unit loads solved on one mesh."""
+    """The solution of unit loads on one mesh."""
 
     @property
     def zones(self) -> tuple[Zone, ...]:
-        """The problem's, and those found on the mesh: corners of cuts, edges of tetrahedra."""
+        """The zones of the problem, and those found on the mesh: corners of cuts, sharp edges."""
 
     @property
     def solids(self) -> tuple[tuple[float, float], ...]:
-        """The ends, z in m, of each local solid; none where the whole pin has one model."""
+        """The ends z of each local solid, m; empty where one model covers the whole pin."""
 
     def field(self, case: str) -> StressField:
-        """Stress as one case sees it: it is not read in zones that its loads make singular."""
+        """The stress for one case, which is not read in zones that the loads of this case make
+        singular.
+        """
 
     def maximum(self, loads: PinLoads) -> MeshMaximum:
-        """The maximum of a case, with the parts of its error that this mesh knows."""
+        """The maximum of a case, with the parts of its error that follow from this mesh alone."""
 
 
 @dataclass(frozen=True)
 class MeshBefore:
-    """The mesh below: its solution, None where only its maxima are known, and these by case."""
+    """The previous, coarser mesh.
+
+    solution: of that mesh; None where only its maxima are known.
+    maxima: for each case, the maximum.
+    """
 
     solution: MeshSolution | None
     maxima: Mapping[str, MeshMaximum]
 
     @property
     def results(self) -> Collection[MeshMaximum]:
-        """Its maxima in all cases."""
+        """The maxima in all cases."""
         return self.maxima.values()
 
 
@@ -107,9 +118,11 @@ class Model(Protocol):
     def solve(
         self, problem: MeshProblem, level: int, before: MeshBefore | None = None
     ) -> MeshSolution:
-        """All unit loads of all cases on mesh number `level`; 0 is the first of a run, charts also
-        ask for coarser ones below. before: the mesh below, by which this one is fine where stress
-        is high, and from which it takes what need not be solved again.
+        """Solve all unit loads of all cases on mesh number `level`.
+
+        level: 0 for the first mesh of a run; charts also ask for coarser meshes, below 0.
+        before: the previous mesh. The new mesh is fine where stress was high on it, and reuses the
+        parts that need not be solved again.
 
         Raises: MeshError; SolveError, also for more memory than the problem allows.
         """

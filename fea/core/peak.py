@@ -1,4 +1,4 @@
-"""A pin's maximum von Mises stress in one case: its value, its error and a verdict."""
+"""A pin's maximum von Mises stress in one load case: its value, its error and a verdict."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Verdict = Literal["converged", "unconverged", "singular", "rigid", "failed"]
 
 @dataclass(frozen=True)
 class Reason:
-    """A human-readable text, and the codes of the reasons that it states, for programs."""
+    """A human-readable text, and the machine-readable codes of the reasons that it states."""
 
     text: str = ""
     codes: tuple[str, ...] = ()
@@ -26,15 +26,18 @@ class Reason:
 
 
 NO_REASON = Reason()
-NO_BOUND = frozenset({"no-error-known", "no-notch-factor"})  # reasons: the error may be any
+NO_BOUND = frozenset({"no-error-known", "no-notch-factor"})  # reasons why the error is unknown
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """One mesh of the sequence: unknowns, maximum, Pa, and solution time, s.
+    """One mesh of the sequence.
 
-    energy: strain energy, J, of the pin under the loads that govern on the last mesh; None where
-    the model gives none.
+    dofs: number of unknowns.
+    max_von_mises: maximum, Pa.
+    seconds: solution time, s.
+    strain_energy: of the pin under the loads that govern on the last mesh, J; None where the model
+    gives none.
     """
 
     dofs: int
@@ -47,18 +50,19 @@ class Refinement:
 class SingularZone:
     """A circle near which stress is unbounded.
 
-    location: (x, y, z), m, of the point on it where stress is largest.
-    kind: its cause, as text.
+    location: (x, y, z), m, of the point on the circle where stress is largest.
+    kind: cause of the singularity, as text.
     between: the surfaces that meet there.
-    exponent: stress grows as distance^-exponent, as measured, None where it was not;
-    exponent_theory: 0 for a logarithm.
-    excluded: distance, m, within which stress is excluded.
-    governs: whether the stress inside (max_von_mises, Pa, which depends on the mesh) exceeds that
-    outside of all zones.
-    advice: how to remove it.
+    exponent: measured exponent, with which stress grows as distance^-exponent; None where it was
+    not measured.
+    exponent_theory: theoretical exponent; 0 for a logarithm.
+    excluded: distance within which stress is excluded, m.
+    governs: whether the stress inside (`felt`) exceeds the stress outside all zones.
+    max_von_mises: largest stress inside, Pa, which depends on the mesh.
+    advice: how to remove the singularity.
     strength: intensity of the singularity, where the exponent was measured.
-    felt: the largest stress inside but next to its very edge, Pa, which does not depend on the
-    mesh; 0 where that is not known.
+    felt: largest stress inside but away from the singularity itself, Pa, which does not depend on
+    the mesh (ZoneMaximum.felt); 0 where it is not known.
     """
 
     location: Point
@@ -76,11 +80,14 @@ class SingularZone:
 
 @dataclass(frozen=True)
 class ErrorParts:
-    """The parts of an error, Pa.
+    """The parts of an error, Pa. None of them includes the modelling of the joint.
 
-    They come from the mesh; from the time between instants; from the truncated harmonics of a
-    bearing pressure; from what a model neglects (a beam; contact without holes); from the cells of
-    contact pressure; from the ends of a local solid. None includes the modelling of the joint.
+    mesh: of the mesh.
+    time: between instants.
+    series: of the truncated harmonics of a bearing pressure.
+    model: of a model's simplifications (a beam; contact at cuts).
+    cells: of the cells of contact pressure.
+    truncation: of the ends of a local solid.
     """
 
     mesh: Stress
@@ -92,30 +99,31 @@ class ErrorParts:
 
     @property
     def total(self) -> float:
-        """Their sum, Pa."""
+        """The sum of the parts, Pa."""
         return self.mesh + self.time + self.series + self.model + self.cells + self.truncation
 
 
 @dataclass(frozen=True)
 class Maximum:
-    """The maximum of a pin in one case, with its error and verdict.
+    """The maximum of a pin in one load case, with its error and verdict.
 
-    max_von_mises, error_estimate: Pa, None when the pin is `rigid` or its solution `failed`.
+    note: human-readable sentence on the verdict.
+    max_von_mises, error_estimate: Pa; None if the pin is `rigid` or its solution `failed`.
     location: (x, y, z) in the pin's axes, m.
-    governing: the loads at the governing instant, in SI whatever the units of the rest.
-    note: one sentence on the verdict, for people.
-    why: the model used and the reason, for people.
-    reasons: the codes of everything that note and why state.
-    singular_at: zones of unbounded stress; where one governs (`singular`) the maximum is that
-    outside all of them, which depends on the excluded distance.
-    interval: the maximum over half and twice that distance with its error, Pa; error_estimate
-    covers both of its ends.
-    parts: of the error on the meshes and instants.
-    imbalance: of an unconstrained pin, the part that its bands react: the force over the largest
-    load, and the couple over that load times the length.
-    solids: between which z, m, local solids are, of a pin with cuts.
-    places: surface, section and contact, of which the maximum is the larger of the first two.
-    strength: yield strength where the maximum is, of a pin with a hardened surface; None elsewhere.
+    governing: loads at the governing instant, in SI units whatever the units of the rest.
+    history: the meshes.
+    singular_at: zones of unbounded stress. Where one of them governs (verdict `singular`), the
+    maximum is that outside all zones, which depends on the excluded distance.
+    why: human-readable reason for the model.
+    interval: bounds of the maximum with half and twice the excluded distance, with its error, Pa;
+    error_estimate covers both.
+    parts: parts of the error of meshes and instants.
+    reasons: codes of everything that `note` and `why` state.
+    imbalance: relative imbalance of an unconstrained pin that its bands react: the force over the
+    largest load, and the couple over that load times the length.
+    solids: for a pin with cuts, the ends z of each local solid, m.
+    places: surface, section and contact; the maximum is the larger of the first two.
+    strength: for a pin with a hardened surface, the yield strength at the maximum; None for others.
     """
 
     pin: str
@@ -149,25 +157,25 @@ class Maximum:
 
     @property
     def upper_end(self) -> float:
-        """The maximum with its error, or the upper end of its interval, Pa."""
+        """The maximum plus its error, or the upper end of its interval, Pa."""
         if self.interval is not None:
             return self.interval[1]
         return (self.max_von_mises or 0.0) + (self.error_estimate or 0.0)
 
     @property
     def lower_end(self) -> float:
-        """The maximum less its error, or the lower end of its interval, Pa."""
+        """The maximum minus its error, or the lower end of its interval, Pa."""
         if self.interval is not None:
             return self.interval[0]
         return (self.max_von_mises or 0.0) - (self.error_estimate or 0.0)
 
     @property
     def bounded(self) -> bool:
-        """Whether the error bounds the maximum: not where it is unknown."""
+        """Whether the error is known, so that it bounds the maximum."""
         return NO_BOUND.isdisjoint(self.reasons)
 
     def yield_strength(self, of_material: float | None) -> float | None:
-        """The yield strength where the maximum is, by default that of the material, Pa."""
+        """The yield strength at the maximum, by default that of the material, Pa."""
         return of_material if self.strength is None else self.strength
 
     @property
@@ -177,17 +185,17 @@ class Maximum:
 
     @property
     def dofs(self) -> int:
-        """Unknowns of the finest mesh."""
+        """The number of unknowns of the finest mesh; 0 without meshes."""
         return self.history[-1].dofs if self.history else 0
 
     @property
     def seconds(self) -> float:
-        """Solution time of all meshes, s."""
+        """The solution time of all meshes, s."""
         return sum(step.seconds for step in self.history)
 
     def safety_factor(self, yield_strength: float | None) -> float | None:
-        """Yield strength there, by default `yield_strength` (Pa), over the maximum; None without
-        either.
+        """The yield strength at the maximum, by default `yield_strength` (Pa), over the maximum;
+        None if one of them is missing or the maximum is zero.
         """
         yield_strength = self.yield_strength(yield_strength)
         if not self.max_von_mises or yield_strength is None:
@@ -196,12 +204,12 @@ class Maximum:
 
 
 def meets_limit(peak: Maximum, limit: float) -> bool | None:
-    """Return whether the maximum stays below a limit, Pa; None if not decided.
+    """Return whether the maximum stays below a limit, Pa; None if that is not decided.
 
-    A maximum is compared with its error, whatever its verdict: one that straddles the limit decides
-    nothing, nor does one whose error is not known stay below. A singular one exceeds the limit if
-    its whole interval does; it never stays below, since stress at the singularity itself is
-    unbounded.
+    The maximum is compared with its error, whatever its verdict. It is not decided if the limit
+    lies between the bounds, or if the maximum seems to stay below but its error is unknown. A
+    singular maximum exceeds the limit if its whole interval does. It never stays below, since
+    stress at the singularity itself is unbounded.
     """
     stress, error = peak.max_von_mises, peak.error_estimate
     if stress is None or error is None:
@@ -215,14 +223,15 @@ def meets_limit(peak: Maximum, limit: float) -> bool | None:
 def discretisation_error(
     history: tuple[Refinement, ...], ratio: float, scatter: float = 0.0, least_order: float = 0.5
 ) -> float:
-    """Estimated error (Pa) of the last of at least two meshes, each `ratio` times finer.
+    """The estimated error (Pa) of the last of at least two meshes, each `ratio` times finer.
 
-    Roache's grid convergence index, Fs e / (ratio^p - 1), with the observed order p and Fs = 1.25.
-    On unstructured meshes two values can agree by chance, so the last change e counts as at least
-    what the change before it would leave at p = 2, the order of the recovered stress. Where the
-    changes hardly shrink (p < 0.5) Fs = 3, and p is the `least_order` that the model can have; but
-    changes of alternating sign, or within twice the `scatter` (Pa) of the mesh, are no trend, and
-    then p = 2. Two meshes: p = 2 and Fs = 3, a rough estimate. Never less than the scatter.
+    It is Roache's grid convergence index, Fs e / (ratio^p - 1), with the observed order p and Fs =
+    1.25. On unstructured meshes two values can agree by chance. The last change e therefore counts
+    as at least the change before it times ratio^-2, as for p = 2, the order of the recovered
+    stress. Where the changes hardly shrink (p < 0.5), Fs = 3 and p is the `least_order` that the
+    model can have. But changes of alternating sign, or within twice the `scatter` (Pa) of the mesh,
+    are not a trend; then Fs = 3 and p = 2. With two meshes, p = 2 and Fs = 3 give a rough estimate.
+    The error is never less than the scatter.
 
     Source: Roache, J. Fluids Eng. 116 (1994) 405.
     """
@@ -244,13 +253,16 @@ def discretisation_error(
 
 
 def widened(interval: tuple[float, float], relative: float) -> tuple[float, float]:
-    """Both ends of an interval, Pa, with a relative error; never below zero."""
+    """The ends of an interval, Pa, widened by a relative error; the lower end is at least zero."""
     low, high = interval
     return max(0.0, low * (1.0 - relative)), high * (1.0 + relative)
 
 
 def accuracy(relative: float, tolerance: float, known: bool) -> Reason:
-    """The relative error, and whether it is within the tolerance."""
+    """The reason that states a relative error.
+
+    known: whether the error is within the tolerance.
+    """
     if known:
         return Reason(f"estimated error {relative:.1%}", ("within-tolerance",))
     text = f"estimated error {_percent(relative)}, above the tolerance of {_percent(tolerance)}"
@@ -258,5 +270,5 @@ def accuracy(relative: float, tolerance: float, known: bool) -> Reason:
 
 
 def _percent(relative: float) -> str:
-    """A share as a percentage that is 0 only where the share is."""
+    """A fraction as a percentage, which reads 0 only if the fraction is 0."""
     return f"{relative:.1%}" if relative >= 0.001 else f"{100.0 * relative:.1g}%"

@@ -1,21 +1,22 @@
 """Loads on a pin, and the unit loads of which they are made.
 
-Everything is a Fourier harmonic about the pin's axis. A load of harmonic n and phase p has, with
-psi = n theta - p pi / 2, the components (R cos psi, T sin psi, Z cos psi) along r, theta and z,
+Every load is a sum of Fourier harmonics about the pin's axis. With psi = n theta - p pi / 2, a load
+of harmonic n and phase p has the components (R cos psi, T sin psi, Z cos psi) along r, theta and z,
 whose amplitudes R, T, Z depend on z alone:
 
     force x, y           n = 1, p = 0, 1    a traction of constant direction: R = -T
     force z              n = 0, p = 0       a shear that fades towards the band's edges ("pull")
     moment about y, x    n = 1, p = 0, 1    as the forces, but linear in z about the band's middle;
-                                            among bearing pressures a pressure, too ("tilt")
-    moment about z       n = 0, p = 1       tangential, fading likewise ("twist")
+                                            with bearing pressures a pressure, too ("tilt")
+    moment about z       n = 0, p = 1       a tangential traction that fades likewise ("twist")
     bearing pressure     n = 0, 1, 2, 4, .. the series of a cosine on the loaded half
     weight and inertia   n = 1 and 0        a force per mass, the same everywhere
 
-So a unit load of harmonic n serves all directions: phases differ by a turn about the axis.
+A unit load of harmonic n therefore serves all directions: its phases differ by a rotation about the
+axis.
 
-A shear that jumps at the edge of its band makes stress infinite there, as a logarithm. No link or
-press fit does this, so that shears along and about the axis fade (fea.core.tractions).
+A shear that jumps at the edge of its band makes stress infinite there, like a logarithm. No link or
+press fit does this; therefore shears along and about the axis fade (fea.core.tractions).
 """
 
 from __future__ import annotations
@@ -40,9 +41,10 @@ Kind = Literal[
 ]  # fmt: skip
 Distribution = Literal["uniform", "cosine"]
 
-# Of the largest force and the pin's length: a moment across the axis below it is none.
+# Fraction of the largest force times the pin's length below which a moment across the axis is
+# round-off.
 MOMENT_ROUND_OFF = 1e-9
-LOAD_ROUND_OFF = 1e-9  # of a load's amounts
+LOAD_ROUND_OFF = 1e-9  # fraction of a load's largest amount below which a phase is round-off
 
 BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 
@@ -50,11 +52,11 @@ BODY_SURFACE = ""  # the `surface` of a load on the whole pin
 class UnitLoad(NamedTuple):
     """A load of one harmonic on a surface (by name), or a rigid motion of a clamp.
 
-    Per N, N m, or (kind "body") m/s^2; kinds "shift" and "turn" are distributed as "force" and
-    "moment" but are motions of a clamp, per m and rad about the pin's origin.
+    Amounts are in N, N m, or (kind "body") m/s^2. Kinds "shift" and "turn" have the distributions
+    of "force" and "moment", but are motions of a clamp, in m, and in rad about the pin's origin.
     n: the harmonic.
-    parts: instead of one surface, those of a pressure, or of a traction along the axis ("axial") or
-    about it ("around"), on several, each with its amplitude, Pa; of a "pull" or "twist" the rings
+    parts: instead of one surface, several surfaces with their amplitudes, Pa: of a pressure, or of
+    a traction along the axis ("axial") or about it ("around"). For a "pull" or "twist", the rings
     of the band, each with 1.
     """
 
@@ -65,16 +67,17 @@ class UnitLoad(NamedTuple):
 
     @property
     def surfaces(self) -> tuple[str, ...]:
-        """The surfaces on which it acts, by name; none for a load on the whole pin."""
+        """The names of the surfaces on which the load acts; none for a load on the whole pin."""
         if self.parts:
             return tuple(name for name, _ in self.parts)
         return (self.surface,) if self.surface else ()
 
     @property
     def single_surface_loads(self) -> dict[UnitLoad, float]:
-        """The unit loads of which it is the sum, with their amounts, Pa.
+        """The unit loads of which the load is the sum, with their amounts, Pa.
 
-        For a pressure on several surfaces: one of unit amplitude on each of them. Otherwise itself.
+        A traction on several surfaces is the sum of tractions of unit amplitude on each of them.
+        Any other load is returned as it is.
         """
         if not self.parts or self.fades:
             return {self: 1.0}
@@ -82,19 +85,18 @@ class UnitLoad(NamedTuple):
 
     @property
     def fades(self) -> bool:
-        """Whether it is a shear along the axis or about it that fades towards its band's edges."""
+        """Whether the load is a shear, axial or about the axis, that fades at the band's edges."""
         return self.kind in ("pull", "twist")
 
     @property
     def shears(self) -> bool:
-        """Whether its traction has a shear that jumps at the band's edge."""
+        """Whether the traction has a shear that jumps at the band's edge."""
         return self.kind in ("force", "moment") and not self.surface.startswith(SHOULDER)
 
     @property
     def phases(self) -> tuple[int, ...]:
-        """The phases that exist.
-
-        They are 0 and 1; for n = 0 only 0 (along the axis, pressure) or only 1 (about the axis).
+        """The phases of the load: 0 and 1; for n = 0 only 0 (along the axis, pressure) or only 1
+        (about the axis).
         """
         if self.n:
             return (0, 1)
@@ -110,22 +112,23 @@ class PinLoads:
 
     surfaces: C names.
     forces: (T, C, 3) N.
-    moments: (T, C, 3) N m, or what broadcasts to that shape.
+    moments: (T, C, 3) N m, or an array that broadcasts to this shape.
     distribution: of transverse forces over their bands: "uniform" (a traction of constant
     direction) or "cosine" (a bearing pressure on the loaded half, with harmonics up to `terms`).
-    body: (T, 3) m/s^2, or what broadcasts to it: gravity less the pin's own acceleration.
-    times: (T,) s, rising, of a motion.
+    body: gravity minus the pin's own acceleration, (T, 3) m/s^2, or an array that broadcasts to
+    this shape.
+    times: of the instants of a motion, in increasing order, (T,) s; None without a motion.
     pressed: where lugs press on the pin.
-    seats: where links' forces along the axis enter, by surface: the surfaces that take them towards
-    the start of the pin and towards its end; links without an entry bear on their own bands.
-    tilting: surfaces whose links state moments across the axis, in the whole case; None: those
-    with any at these instants (`tilting_links`).
-    pulls: links that exert forces along the axis, or torques, in any load of the problem: the
-    surface, and 0 for towards the start of the pin, 1 for towards its end, 2 for a torque.
-    always: unit loads that count even where they are zero at all these instants, since they act
-    under other loads of the problem, which are superposed from the same fields.
-    bands: surfaces that together are the rings of one band, over which its force along the axis and
-    its torque fade; other surfaces are bands of their own.
+    tilting: surfaces whose links state moments across the axis in the whole case; None: those with
+    such moments at these instants (`tilting_links`).
+    seats: for each surface, the surfaces that take the axial force of its link, towards the start
+    of the pin and towards its end; links without an entry bear on their own bands.
+    pulls: links that exert axial forces or torques in any load of the problem: the surface, and 0
+    for towards the start of the pin, 1 for towards its end, 2 for a torque.
+    always: unit loads that count even if they are zero at all these instants, since they act under
+    other loads of the problem, which are superposed from the same fields.
+    bands: groups of surfaces that are the rings of one band, over which its axial force and its
+    torque fade; other surfaces are bands of their own.
     """
 
     case: str
@@ -163,20 +166,21 @@ class PinLoads:
 
     @property
     def on_rings(self) -> PinLoads:
-        """The loads that sections carry: these, or the resultants of contact pressures on rings."""
+        """The loads that sections carry: these loads, or the resultants of contact pressures."""
         return self
 
     @property
     def squeezing(self) -> float:
-        """The largest force, N, by which pressures that balance themselves squeeze the pin: their
-        round-off is no load.
+        """The largest force, N, of pressures that squeeze the pin and are in balance on their own.
+
+        An imbalance within their round-off is not a load.
         """
         return 0.0
 
     def tilting_links(self, length: float) -> tuple[str, ...]:
         """The surfaces whose links state moments across the axis.
 
-        length: of the pin, m, by which round-off of forces makes moments.
+        length: of the pin, m; the round-off of moments is judged by forces times this length.
         """
         if self.tilting is not None:
             return self.tilting
@@ -187,13 +191,13 @@ class PinLoads:
 
     @property
     def pressures(self) -> tuple[int, ...]:
-        """Harmonics of the bearing pressure that are taken into account."""
+        """The harmonics of the bearing pressure that are taken into account."""
         return (0, 1, *range(2, self.terms + 1, 2))
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """The amount (T, 2), by phase, of each unit load that ever acts.
+        """The amount by phase, (T, 2), of each unit load that acts at any instant.
 
-        Neither the mapping nor its arrays can be written to, since they are made once.
+        The mapping and its arrays are read-only, since they are made only once.
         """
         return MappingProxyType(self._coefficients)
 
@@ -212,8 +216,8 @@ class PinLoads:
         tilt: Kind = "moment" if self.distribution == "uniform" else "tilt"
         for c, name in enumerate(self.surfaces):
             (x, y, z), (mx, my, mz) = self.forces[:, c].T, self.moments[:, c].T
-            # Transverse force: a traction of constant direction, or the series of a bearing
-            # pressure, whose harmonic n turns n times as fast as the force.
+            # A transverse force is a traction of constant direction, or the series of a bearing
+            # pressure. Harmonic n of the series is turned by n times the angle of the force.
             if self.distribution == "uniform":
                 add(UnitLoad(name, "force", 1), x, y)
             else:
@@ -221,8 +225,8 @@ class PinLoads:
                 for n in self.pressures:
                     turned = (size * np.cos(n * angle), size * np.sin(n * angle))
                     add(UnitLoad(name, "pressure", n), *turned)
-            # A moment about y is of phase 0, as a force along x; one about x of phase 1, with its
-            # sign changed.
+            # A moment about y has phase 0, like a force along x; a moment about x has phase 1, with
+            # its sign changed.
             add(UnitLoad(name, tilt, 1), my, -mx)
             if name not in rings:
                 face = name.startswith(SHOULDER)
@@ -246,7 +250,7 @@ class PinLoads:
         return self.forces, self.moments, self.body
 
     def turned(self, angle: float) -> PinLoads:
-        """The same loads, all turned about the pin's axis by `angle` (rad)."""
+        """The same loads, rotated about the pin's axis by `angle` (rad)."""
         c, s = np.cos(angle), np.sin(angle)
         about_z = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         forces, moments, body = (x @ about_z for x in self._vectors)
@@ -262,7 +266,7 @@ class PinLoads:
         )
 
     def merged(self, other: PinLoads) -> PinLoads:
-        """These loads and the instants of other loads of the same motion, in the order of time."""
+        """The loads with the instants of other loads of the same motion added, in order of time."""
         assert self.times is not None
         assert other.times is not None
         times, first = np.unique(np.concatenate([self.times, other.times]), return_index=True)
@@ -278,8 +282,9 @@ class PinLoads:
 
 @dataclass(frozen=True)
 class LoadAmounts:
-    """Amounts (T, 2) of unit loads, by phase, that need not be those of any forces.
+    """Amounts of unit loads at T instants, which need not belong to any forces.
 
+    acting: amount of each unit load by phase, (T, 2).
     count: T.
     pressed: where lugs press on the pin at these instants.
     """
@@ -293,7 +298,7 @@ class LoadAmounts:
         return self.count
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """The amount (T, 2), by phase, of each unit load."""
+        """The amount of each unit load by phase, (T, 2)."""
         return self.acting
 
     def at(self, instants: NDArray[np.int64]) -> LoadAmounts:
@@ -303,7 +308,7 @@ class LoadAmounts:
         return LoadAmounts(self.case, acting, len(instants), pressed)
 
     def turned(self, angle: float) -> LoadAmounts:
-        """The same amounts, all turned about the pin's axis by `angle` (rad)."""
+        """The amounts of the loads rotated about the pin's axis by `angle` (rad)."""
         acting = {}
         for load, both in self.acting.items():
             c, s = np.cos(load.n * angle), np.sin(load.n * angle)
@@ -328,7 +333,7 @@ def require_solved(case: str, acting: Iterable[UnitLoad], solved: Iterable[UnitL
 def amounts_of(units: tuple[Unit, ...], loads: Loads) -> Floats:
     """The amount of each of L units at each instant, (T, L).
 
-    Raises: ArgumentError when a part of the loads is not among the units.
+    Raises: ArgumentError where a part of the loads is not among the units.
     """
     number = {unit: k for k, unit in enumerate(units)}
     out = np.zeros((len(loads), len(units)))
@@ -343,7 +348,11 @@ def amounts_of(units: tuple[Unit, ...], loads: Loads) -> Floats:
 
 
 def chord_deviation(loads: PinLoads, middle: PinLoads) -> LoadAmounts:
-    """The amounts (T - 1) by which loads amid each two instants differ from the mean of both."""
+    """The deviation of the loads in the middle of each interval from the mean of its ends, at T - 1
+    instants.
+
+    middle: the loads in the middles of the T - 1 intervals.
+    """
     ends, amid = loads.coefficients(), middle.coefficients()
     none = np.zeros((len(loads), 2))
     acting = {}

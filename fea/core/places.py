@@ -1,14 +1,15 @@
-"""Where a pin's stress is read, and by what each place is judged: surface, section and contact.
+"""The places where a pin's stress is read and judged: surface, section and contact.
 
-surface    The largest von Mises stress over the pin's surface but for what lugs press on at their
-           edges: fillets, grooves, gaps, the free side of bands. Judged by yield, and in fatigue.
+surface    The largest von Mises stress over the pin's surface, without the area on which edges of
+           lugs press: fillets, grooves, gaps, the free side of bands. Judged by yield and in
+           fatigue.
 section    sqrt(s^2 + 3 t^2) by axial force, bending, shear and torsion, the largest over all
            sections. Judged by yield.
-contact    What only contact has: the field of a lug's edge, and what lies beneath the pressure.
+contact    Stress that only contact causes: at the edges of lugs, and beneath the pressure.
 
-A row's number is the larger of surface and section; of a pin with a hardened surface that of the
-part with the least factor (fea.core.hardened). It is safe only if what lies beneath the
-contact, farther than BENEATH_DISTANCE from it, meets the required factor too.
+A row's number is the larger of surface and section; for a pin with a hardened surface it is that of
+the part with the least factor (fea.core.hardened). A row is safe only if the stress beneath
+contact, farther than BENEATH_DISTANCE from it, meets the required factor, too.
 
 Source: ASME BPVC VIII-2, part 5, for judging kinds of stress apart (membrane, bending, peak;
 bearing by itself).
@@ -24,7 +25,7 @@ from pinbase.dimensions import Force, Length, Moment, Point, Stress
 
 Place = Literal["surface", "section", "core"]
 
-# Of the diameter: farther from every pressed cell a point lies beneath the contact
+# Distance from every pressed cell, in diameters, beyond which stress counts as beneath contact.
 BENEATH_DISTANCE = 0.1
 
 
@@ -34,8 +35,8 @@ class SurfacePlace:
 
     location: (x, y, z).
     time: s.
-    verdict: as that of fea.core.peak.Maximum.
-    strength: yield strength there, of a pin with a hardened surface; None elsewhere.
+    verdict: as in fea.core.peak.Maximum.
+    strength: for a pin with a hardened surface, the yield strength there; None for others.
     """
 
     max_von_mises: Stress
@@ -48,13 +49,13 @@ class SurfacePlace:
 
 @dataclass(frozen=True)
 class SectionPlace:
-    """The largest stress of a section with its error, its z, and the internal forces there.
+    """The largest stress of a section with its error, its z, and the section forces there.
 
-    Forces and moments are positive but for the axial force.
-    plastic_utilisation: the used part of what a fully plastic section carries
+    Forces and moments are magnitudes, except the axial force.
+    plastic_utilisation: fraction used of the resistance of the fully plastic section
     (assess.plastic.hinge); None without a yield strength.
     course: pairs of z and the largest stress of the section there, along the pin at that instant.
-    strength: as of SurfacePlace.
+    strength: as in SurfacePlace.
     """
 
     max_von_mises: Stress
@@ -75,11 +76,11 @@ class SectionPlace:
 class ContactEdge:
     """The edge of a lug, at the start or the end of its band, and the pressure towards it.
 
-    K, exponent: pressure is K distance^-exponent.
-    yield_distance: at which that falls to yield.
-    max_pressure, max_von_mises: of the pin at a rounded edge; None at a sharp one, where pressure
-    has no bound.
-    error_estimate: of that pressure; None likewise.
+    K, exponent: the pressure is K distance^-exponent.
+    yield_distance: distance at which this pressure falls to the yield strength.
+    max_pressure, max_von_mises: of the pin at a rounded edge; None at a sharp edge, where pressure
+    is unbounded.
+    error_estimate: of the largest pressure; None at a sharp edge.
     """
 
     band: str
@@ -105,7 +106,7 @@ class BandPressure:
     """A band under its lug.
 
     mean_pressure: force over diameter and length.
-    bearing_share: its part of the bearing strength, None without one.
+    bearing_share: mean pressure over the bearing strength; None without a bearing strength.
     pressed: the cells with pressure.
     """
 
@@ -117,12 +118,12 @@ class BandPressure:
 
 @dataclass(frozen=True)
 class CaseCrushing:
-    """The largest von Mises stress in the core beneath the pressure of a band alone, as if on a
-    half-space (fea.support.contact.case_crushing).
+    """The largest von Mises stress in the core by the pressure on a band alone, as in a half-plane
+    (fea.support.contact.case_crushing).
 
-    band, z: where.
-    depth: of that stress, beneath the surface.
-    max_pressure: of the ring there.
+    band, z: location of the stress.
+    depth: of the stress, beneath the surface.
+    max_pressure: largest pressure on the ring there.
     strength: yield strength of the core.
     """
 
@@ -138,15 +139,17 @@ class CaseCrushing:
 class ContactPlace:
     """The stress beneath contact, the reach of high stress, and the pressures of a pin's lugs.
 
-    beneath: the largest von Mises stress farther than BENEATH_DISTANCE diameters from every pressed
-    cell, with its error, where and when.
-    reach: distance from pressed cells up to which stress exceeds yield, at the governing instants;
-    reach_required: the same for yield over the required factor; None without one.
+    beneath: largest von Mises stress farther than BENEATH_DISTANCE diameters from every pressed
+    cell, with its error, location and time.
+    reach: distance from pressed cells up to which stress exceeds the yield strength, at the
+    governing instants; None without a strength.
+    reach_required: the same for the yield strength over the required factor; None without one.
     edges, bands: at the row's instant.
-    depths: pairs of a stress and the distance from pressed cells that it reaches, stresses falling
-    and distances growing, down to the least stress for which an outcome may ask.
-    strength: as of SurfacePlace; of a pin with a hardened surface `beneath` is in its core.
-    crushing: of the case of such a pin.
+    depths: pairs of a stress and the distance from pressed cells that it reaches, with decreasing
+    stress and increasing distance, down to the least stress that an outcome may need.
+    strength: as in SurfacePlace; in a pin with a hardened surface, `beneath` is in the core or in
+    an unhardened part.
+    crushing: case crushing of such a pin.
     """
 
     beneath: Stress
@@ -167,17 +170,17 @@ class ContactPlace:
         return self.beneath + self.beneath_error
 
     def depth(self, limit: float) -> float:
-        """Distance, m, from every pressed cell up to which stress exceeds a limit, Pa."""
+        """The distance from every pressed cell up to which stress exceeds a limit, Pa, in m."""
         return max((depth for stress, depth in self.depths if stress > limit), default=0.0)
 
 
 @dataclass(frozen=True)
 class PartPlace:
-    """The largest stress of a part of one yield strength of a pin with a hardened surface.
+    """The largest stress of a part of a pin with a hardened surface; a part has one yield strength.
 
-    part: its case, its core, or what is not hardened.
-    place: whether it is of the stress field ("surface") or of a section ("section").
-    depth: at which it is, beneath the hardened surface; None for what is not hardened.
+    part: the case, the core, or an unhardened part.
+    place: "surface" for a stress of the field, "section" for one of a section.
+    depth: of the stress, beneath the hardened surface; None for an unhardened part.
     """
 
     part: Literal["case", "core", "unhardened"]
@@ -212,6 +215,8 @@ class Places:
 
     @property
     def governing(self) -> str:
-        """The place that governs; of a pin with a hardened surface its case or core."""
+        """The place that governs; for a pin with a hardened surface its case or core if that part
+        governs.
+        """
         part = self.hardened[0].part if self.hardened else "unhardened"
         return self.governs if part == "unhardened" else part

@@ -1,11 +1,12 @@
-"""Where lugs press on a pin, instant by instant, and where its surface is free to be read.
+"""The arcs on which lugs press on a pin at each instant, and the free surface, which is read.
 
-Beside a pressed cell stress is not that of the true, smooth pressure: cells end in steps, and the
-elements that touch one are off by 13 % of the pressure, the next ones by 3, 1.3 and less than 1 %.
-So what counts as pressed is a cell with pressure, one sector more on both sides, and beyond the
-last pressed ring its own length (or that of the next ring, if that is shorter). Everything else of
-the surface is free, however near to an edge: there the stress of a half-plane along its surface is
-that of the rest of the pin, for the pressure itself adds nothing beside where it acts.
+Beside a pressed cell the stress is not that of the true, smooth pressure, since the pressure of
+cells ends in steps. The stress of elements that touch a step is off by 13 % of the pressure, that
+of the next elements by 3, 1.3 and less than 1 %. The pressed surface therefore consists of the
+cells with pressure, one more sector on both sides, and, beyond the last pressed ring, a length
+equal to that of the ring (or of the next ring if that is shorter). The rest of the surface is free,
+however near to an edge it is. On a half-plane, pressure causes no stress in the free surface beside
+it, so that the stress there is that of the rest of the pin.
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ from numpy.typing import NDArray
 
 from pinbase.arrays import Floats, Ints, Mask
 
-ARC_COUNT = 360  # equal arcs about the axis, the first about x
+ARC_COUNT = 360  # equal arcs around the axis; the first is centred on x
 ARC_ANGLES = 2.0 * np.pi * np.arange(ARC_COUNT) / ARC_COUNT  # of their middles
-ON_RING_TOLERANCE = 1e-3  # of a ring's length: nearer to its cylinder a point is on it
-RING_END_TOLERANCE = 1e-9  # of the radius: ends of rings this near are one
-# Part of a ring's length in which the surface under pressure is read, chosen by judgement: away
-# from the steps of pressure at both ends.
+ON_RING_TOLERANCE = 1e-3  # distance from a ring's cylinder within which a point is on it, / length
+RING_END_TOLERANCE = 1e-9  # distance within which ends of two rings are the same, over the radius
+# Part of a ring's length in which the surface under pressure is read: away from the steps of
+# pressure at both ends. Chosen by judgement.
 READ_RING_RANGE = 0.3, 0.7
-# Pressed rings next to the rounding of a lug's edge whose pressed surface is not read.
+# Number of pressed rings next to the rounding of a lug's edge whose pressed surface is not read.
 UNREAD_EDGE_RINGS = 1
 
 
@@ -35,9 +36,9 @@ class Rings:
     """The rings (R,) of all bands along a pin, rising in z.
 
     start, end, radius: (R,) m.
-    band: (R,) the number of each ring's lug.
-    edge: (R,) whether it is under a rounded edge of the lug.
-    exponent: (R,) of the pressure at the lug's edges, were they sharp (fea.singular.lug_edge).
+    band: number of each ring's lug, (R,).
+    edge: whether the ring is under a rounded edge of the lug, (R,).
+    exponent: of the pressure at the lug's edges if they were sharp, (R,) (fea.singular.lug_edge).
     """
 
     start: Floats
@@ -52,7 +53,7 @@ class Rings:
 
     @property
     def length(self) -> Floats:
-        """Lengths (R,), m."""
+        """The lengths of the rings, (R,) m."""
         return self.end - self.start
 
     @cached_property
@@ -61,27 +62,32 @@ class Rings:
         return tuple(np.asarray(getattr(self, f.name)).tobytes() for f in fields(self))
 
     def at(self, r: Floats, z: Floats) -> Ints:
-        """The ring (P,) on which each point lies; -1 for none. r, z: (P,) m, z of no ring's end."""
+        """The number of the ring on which each point lies, (P,); -1 for none.
+
+        r, z: of the points, (P,) m; no z may be that of a ring's end.
+        """
         off = np.abs(r[:, None] - self.radius) <= ON_RING_TOLERANCE * self.length
         on = off & (z[:, None] > self.start) & (z[:, None] < self.end)
         return np.where(on.any(axis=1), on.argmax(axis=1), -1)
 
     def amid(self, r: Floats, z: Floats, middle: Floats) -> Ints:
-        """The ring (P,) in whose READ_RING_RANGE each point lies; -1 for none.
+        """The number of the ring in whose READ_RING_RANGE each point lies, (P,); -1 for none.
 
-        r, z: (P,) m.
-        middle: (P,) m, z of the middle of the element on which each point is.
+        r, z: of the points, (P,) m.
+        middle: z of the middle of each point's element, (P,) m.
         """
         ring = self.at(r, middle)
         part = np.where(ring >= 0, (z - self.start[ring]) / self.length[ring], 0.0)
         return np.where((part >= READ_RING_RANGE[0]) & (part <= READ_RING_RANGE[1]), ring, -1)
 
     def near(self, r: Floats, middle: Floats) -> Mask:
-        """Mask (P, 3 R) of the points that each ring shuts when pressed: under, before, after it.
+        """A mask (P, 3 R) of the points that are not free if a ring is pressed: on each ring,
+        before each ring, and after each ring.
 
-        Before and after, up to the ring's own length or that of the next one, if that is shorter.
-        r: (P,) m.
-        middle: (P,) m, z of the middle of the element on which each point is.
+        Points before and after a ring are closer than the ring's own length, or the length of the
+        next ring if that is shorter.
+        r: of the points, (P,) m.
+        middle: z of the middle of each point's element, (P,) m.
         """
         middle, (before, after) = middle[:, None], self._beside
         off = np.abs(r[:, None] - self.radius)
@@ -94,7 +100,9 @@ class Rings:
 
     @cached_property
     def _beside(self) -> tuple[Floats, Floats]:
-        """Distances (R,), m, before and after each ring within which its step is felt."""
+        """The distances (R,), m, before and after each ring within which its step of pressure
+        affects the stress.
+        """
         before, after = self.length.copy(), self.length.copy()
         here = self.follows
         before[1:][here] = np.minimum(before[1:], self.length[:-1])[here]
@@ -103,7 +111,7 @@ class Rings:
 
     @cached_property
     def follows(self) -> Mask:
-        """(R - 1,) whether the next ring begins where a ring ends, on the same cylinder."""
+        """Whether the next ring begins where a ring ends, on the same cylinder, (R - 1,)."""
         near = RING_END_TOLERANCE * self.radius[1:]
         return (np.abs(self.start[1:] - self.end[:-1]) <= near) & (
             np.abs(np.diff(self.radius)) <= near
@@ -112,8 +120,9 @@ class Rings:
 
 @dataclass(frozen=True)
 class PressedArcs:
-    """The pressed arcs of each ring at each instant, as a mask `on` (T, R, ARC_COUNT).
+    """The pressed arcs of each ring at each instant.
 
+    on: mask of the arcs under pressure, (T, R, ARC_COUNT).
     sector: width of the cells of contact in arcs, rounded up.
     """
 
@@ -125,9 +134,10 @@ class PressedArcs:
     def of(
         cls, rings: Rings, pressed: Sequence[NDArray[np.bool_]], angles: Sequence[float]
     ) -> PressedArcs:
-        """The arcs under cells (R, M) with pressure, of each instant.
+        """The arcs under cells with pressure.
 
-        angles: rad from x to the middle of the first cell, of each instant.
+        pressed: mask of these cells at each instant, (R, M).
+        angles: from x to the middle of the first cell at each instant, rad.
         """
         on = []
         for cells, angle in zip(pressed, angles, strict=True):
@@ -142,31 +152,33 @@ class PressedArcs:
         return replace(self, on=self.on[instants])
 
     def joined(self, other: PressedArcs) -> PressedArcs:
-        """These arcs followed by the instants of others."""
+        """The arcs at these instants, followed by those at the instants of others."""
         return replace(self, on=np.concatenate([self.on, other.on]))
 
     def amid(self) -> PressedArcs:
-        """The arcs pressed at both ends of each interval between two instants, (T - 1)."""
+        """The arcs that are pressed at both ends of each of the T - 1 intervals."""
         return replace(self, on=self.on[1:] & self.on[:-1])
 
     def last(self, instant: int) -> tuple[Mask, Mask]:
-        """The first and the last pressed arcs, (R, ARC_COUNT) each, of stretches without gaps."""
+        """The pressed arcs at the start and at the end of stretches of pressed rings without gaps,
+        (R, ARC_COUNT) each.
+        """
         on, follows = self.on[instant], self.rings.follows[:, None]
         before, after = np.zeros_like(on), np.zeros_like(on)
         before[1:], after[:-1] = on[:-1] & follows, on[1:] & follows
         return on & ~before, on & ~after
 
     def shut(self, instant: int) -> Mask:
-        """The arcs (3 R, ARC_COUNT) that each ring shuts: on itself, before and after itself."""
+        """The arcs (3 R, ARC_COUNT) that each ring shuts: on it, before it and after it."""
         first, last = self.last(instant)
         return self.widened(np.concatenate([self.on[instant], first, last]))
 
     def at_edges(self, instant: int) -> Mask:
-        """Mask (R, ARC_COUNT) of the arcs of rings at the edge of a lug.
+        """A mask (R, ARC_COUNT) of the arcs of rings at the edge of a lug.
 
-        These are all arcs under its rounding, whose rings are as short as the steps of pressure are
-        high, and the outermost UNREAD_EDGE_RINGS pressed ones beside them, unless contact has
-        receded from there.
+        These are all arcs under the rounding, where rings are short and steps of pressure high, and
+        the pressed arcs of the next UNREAD_EDGE_RINGS rings, unless contact has receded from the
+        edge.
         """
         on, rings = self.on[instant], self.rings
         out = np.tile(rings.edge[:, None], on.shape[1])
@@ -179,9 +191,9 @@ class PressedArcs:
         return out
 
     def widened(self, arcs: Mask) -> Mask:
-        """The arcs (.., ARC_COUNT) with one sector more on both sides."""
+        """The arcs (.., ARC_COUNT) widened by one sector on both sides."""
         k = self.sector
-        # A running count over the window of 2 k + 1 arcs, the ends joined over the circumference.
+        # This is a running count over a window of 2 k + 1 arcs around the closed circumference.
         round_ = np.concatenate([arcs[..., -k - 1 :], arcs, arcs[..., :k]], axis=-1)
         count = np.cumsum(round_, axis=-1, dtype=np.int32)
         return np.asarray(count[..., 2 * k + 1 :] > count[..., : -2 * k - 1])

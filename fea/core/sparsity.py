@@ -1,7 +1,7 @@
-"""Which pairs of nodes share an element, and the sum over elements for each pair.
+"""The pairs of nodes that share an element, and the sum over elements for each pair.
 
 A stiffness matrix has a block for each such pair. The pairs are sorted once per mesh, by counting
-(two conversions of a sparse matrix), and sums are products with a matrix of ones.
+(two conversions of a sparse matrix). Sums are products with a matrix of ones.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from pinbase.arrays import Floats, Ints
 
 
 class Pattern:
-    """The pairs of nodes of a mesh that share an element: P pairs, by row, then by column.
+    """The P pairs of nodes of a mesh that share an element, sorted by row, then by column.
 
-    elements: (M, k) node numbers.
-    nodes: their count N.
-    columns: (P,) second node of each pair.
-    pointer: (N + 1,) where each first node's pairs begin.
+    elements: node numbers, (M, k).
+    nodes: number of nodes, N.
+    columns: second node of each pair, (P,).
+    pointer: number of the first pair of each first node, (N + 1,).
     """
 
     def __init__(self, elements: Ints, nodes: int) -> None:
@@ -43,7 +43,7 @@ class Pattern:
         return len(self.columns)
 
     def sums(self, parts: Floats) -> Floats:
-        """Sums (P, ..) over the elements of their contributions (M, k, k, ..) to pairs of nodes."""
+        """The sums (P, ..) over the elements of contributions (M, k, k, ..) to pairs of nodes."""
         flat = parts.reshape(self._sum.shape[1], -1)
         return np.asarray(self._sum @ flat).reshape(len(self), *parts.shape[3:])
 
@@ -56,7 +56,7 @@ class Pattern:
         return matrix
 
     def _entries(self, d: int) -> tuple[Any, Any, Any]:
-        """Block entry, column and row pointer of a matrix with blocks (d, d); found once."""
+        """The block entries, columns and row pointer of a matrix with blocks (d, d), made once."""
         if d not in self._known:
             size = d * (len(self.pointer) - 1)
             numbers = np.arange(d * d * len(self)).reshape(-1, d, d)

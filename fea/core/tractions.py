@@ -5,9 +5,9 @@ along phi, has the resultant pi r L p0 / 2 = F, so p0 = 2 F / (pi r L), and the 
 
     p0 / pi + p0 / 2 cos a + sum over even n of (2 p0 / pi) (-1)^(n/2 + 1) / (n^2 - 1) cos n a
 
-which ends in a remainder of at most (2 p0 / pi) / (2 N + 2) after harmonic N.
+The remainder after harmonic N is at most (2 p0 / pi) / (2 N + 2).
 
-A shear along the axis or about it is a parabola over its band, zero at both edges: a jump there
+A shear along or about the axis is a parabola over its band, zero at both edges, since a jump there
 would make stress infinite.
 """
 
@@ -27,11 +27,12 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Traction:
-    """Amplitudes along r, theta and z on a surface that vary along z.
+    """The amplitudes of a traction along r, theta and z, as functions of z on a surface.
 
-    They are `mean` + `slope` (z - middle) + `curve` (z - middle)^2, (3,) each, Pa, Pa/m and Pa/m^2
-    per unit of load.
+    They are `mean` + `slope` (z - middle) + `curve` (z - middle)^2, per unit of load.
+    surface: name.
     middle: m.
+    mean, slope, curve: (3,) each, Pa, Pa/m and Pa/m^2.
     """
 
     surface: str
@@ -41,7 +42,7 @@ class Traction:
     curve: Floats = field(default_factory=lambda: np.zeros(3))
 
     def at(self, z: Floats) -> Floats:
-        """Amplitudes (..., 3), Pa, at z (...) in m."""
+        """The amplitudes (..., 3), Pa, at z (...) in m."""
         s = z[..., None] - self.middle
         return np.asarray(self.mean + self.slope * s + self.curve * s**2)
 
@@ -85,7 +86,7 @@ def traction(pin: PinLike, load: UnitLoad) -> Traction:
 
 
 def _fading(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
-    """A parabola over all rings of a band, zero at its edges."""
+    """The tractions of a shear that is a parabola over all rings of a band, zero at its edges."""
     rings = [pin.band(name) for name in load.surfaces]
     start, end = min(b.z0 for b in rings), max(b.z1 for b in rings)
     area = sum(b.area for b in rings)
@@ -97,10 +98,10 @@ def _fading(pin: PinLike, load: UnitLoad) -> tuple[Traction, ...]:
 
 
 def pressure_amplitude(n: int, band: Band) -> float:
-    """Amplitude, Pa, of harmonic n of a bearing pressure with a resultant of one newton.
+    """The amplitude of harmonic n of a bearing pressure with a resultant of 1 N, Pa.
 
-    For n = 1 it is that of the side the pressure comes from (a = 0), for other n that seen from the
-    direction of the force.
+    Angles are measured from the direction of the force. The pressure acts on the opposite side (a =
+    0), so that the amplitude for n = 1 is negative.
     """
     highest = 2.0 / (math.pi * band.radius * band.length)
     if n == 0:
@@ -113,7 +114,7 @@ def pressure_amplitude(n: int, band: Band) -> float:
 def density_of(material: Material) -> float:
     """The density of a material, kg/m^3.
 
-    Raises: SolveError for one without a density.
+    Raises: SolveError for a material without a density.
     """
     if material.density is None:
         raise SolveError(
@@ -127,11 +128,12 @@ def closing_tractions(
 ) -> tuple[tuple[Traction, ...], ...]:
     """The tractions that react the imbalance of an unconstrained pin, each on all its bands.
 
-    n = 1: a constant one and one that grows with z from each band's own middle, so that a couple is
-    taken up by couples and leaves the bands their forces. n = 0: one along the axis, or one about
-    it at phase 1. Of all tractions with a given resultant that leave the bands the forces of their
-    links but for the imbalance, these have the least mean square.
-    pressure: use pressures instead, which have no shear that would jump at a band's edge.
+    For n = 1 there are two: one that is constant, and one that is linear in z about the middle of
+    each band, so that couples react a couple without changing the forces on the bands. For n = 0
+    there is one along the axis, or one about the axis at phase 1. Of all tractions with a given
+    resultant that keep the forces of the links on their bands except for the imbalance, these have
+    the least mean square.
+    pressure: whether to use pressures, which have no shear that jumps at a band's edge.
     """
     if not pin.connections:
         raise SolveError(

@@ -1,4 +1,4 @@
-"""The surface of a pin for views: fields of its unit loads, and what superposes them in a case."""
+"""The surface of a pin for views: the fields of unit loads, and their superposition in a case."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from pinbase.arrays import Floats, Ints, Mask
 class UnitSurface:
     """The fields of K unit loads at P points of the surface.
 
-    points: (P, 3) m; of a body of revolution those of its meridian at theta = 0, edge by edge in
-    their order (the last of an edge is where the next begins), and `triangles` is empty.
-    triangles: (M, 3) points of any other body.
-    n: (K,) harmonics.
-    stress: (P, 5, K) Pa, five numbers whose squares sum to von Mises squared.
-    displacement: (P, 3, K) m along r, theta, z (x, y, z).
+    points: (P, 3) m. For a body of revolution they are points of the meridian at theta = 0, edge by
+    edge in order (the last point of an edge is the first of the next).
+    triangles: numbers of the points of each triangle, (M, 3); empty for a body of revolution.
+    n: harmonics, (K,).
+    even: for each of the eight components, stress first, whether it is even.
+    stress: five numbers whose squares sum to the square of the von Mises stress, (P, 5, K) Pa.
+    displacement: along r, theta, z (x, y, z for other bodies), (P, 3, K) m.
 
-    Under a load of the amounts a, b (its two phases) a component that is `even` (of the eight,
-    stress first) is at an angle theta a cos + b sin of n theta times the number here, any other a
-    sin - b cos.
-
-    Where K loads of a solid are of one phase each they have n = 0, are even, and b = 0.
+    Under a load with the amounts a and b of its two phases, an even component at an angle theta is
+    the number here times (a cos n theta + b sin n theta), any other component the number times
+    (a sin n theta - b cos n theta). The loads of a solid have one phase each: n = 0, all components
+    are even, and b = 0.
     """
 
     points: Floats
@@ -46,7 +46,10 @@ class UnitSurface:
     ) -> UnitSurface:
         """The surface of any body under L loads of one phase each.
 
-        points: (P, 3) m. triangles: (M, 3) points. stress: (P, 6, L) Pa. displacement: (P, 3, L) m.
+        points: (P, 3) m.
+        triangles: numbers of points, (M, 3).
+        stress: (P, 6, L) Pa.
+        displacement: (P, 3, L) m.
         """
         n = np.zeros(stress.shape[2], dtype=np.int64)
         return cls(points, triangles, n, (True,) * 8, VON_MISES_ROOT @ stress, displacement)
@@ -58,33 +61,31 @@ class UnitSurface:
 
 
 class SectionPlane(Protocol):
-    """The plane through the axis of a body of revolution, at any point of which its stress is
-    known.
-    """
+    """A plane through the axis of a body of revolution, in which stress is known at any point."""
 
     @property
     def skin(self) -> Floats:
-        """Points (S, 2) of the outline, r and z in m, in their order."""
+        """The points of the outline in order, r and z, (S, 2) m."""
 
     def walls(self, z: Floats) -> tuple[Floats, Floats]:
-        """Radii (Z,) of the bore (0 without one) and of the outside at z (Z,), m."""
+        """The radii of the bore (0 without one) and of the outer surface at z, (Z,) m each."""
 
     def outside(self, points: Floats) -> Mask:
-        """Mask (..) of the points (.., 2) that are in no excluded zone."""
+        """A mask (..) of the points (.., 2) outside all excluded zones."""
 
     def von_mises(self, loads: PinLoads, instant: int, angle: float, points: Floats) -> Floats:
-        """Stress (2, ..), Pa, at points (.., 2) of the half plane at an angle, rad, and of the one
-        opposite.
+        """The von Mises stress (2, ..), Pa, at points (.., 2) of the half plane at an angle, rad,
+        and of the opposite half plane.
         """
 
 
 class SurfaceField(Protocol):
-    """The surface in one case.
+    """The surface in one load case.
 
-    unit: the same object in all cases of a mesh.
-    excluded: (P,) points in a singularity, where the maximum is not read.
-    zones: these singularities, where they are circles in a section.
-    plane: of a body of revolution.
+    unit: fields of the unit loads, the same object in all cases of a mesh.
+    excluded: mask (P,) of the points in zones of singularities, where the maximum is not read.
+    zones: these zones, if they are circles about the axis.
+    plane: of a body of revolution; None for other bodies.
     """
 
     @property
@@ -97,29 +98,32 @@ class SurfaceField(Protocol):
     def plane(self) -> SectionPlane | None: ...
 
     def amounts(self, loads: PinLoads) -> Floats:
-        """The amount of each unit load at each instant, by phase: (T, K, 2)."""
+        """The amount of each unit load at each instant by phase, (T, K, 2)."""
 
     def largest(self, loads: PinLoads, instant: int) -> Floats:
-        """The von Mises stress (P,), Pa, at an instant; on a meridian the largest about the axis
-        where it is read, 0 where it is not.
+        """The von Mises stress (P,), Pa, at an instant.
+
+        On a meridian it is the largest over the angles at which it is read, 0 if there are none.
         """
 
     def location(self, loads: PinLoads, instant: int) -> Point | None:
-        """The place (x, y, z), m, of the largest stress that is read at an instant, for a section
-        through it; None for a body that is not of revolution.
+        """The location (x, y, z), m, of the largest stress that is read at an instant, through
+        which a section is shown; None for a body that is not of revolution.
         """
 
     def unread(self, loads: PinLoads, points: Ints, angles: Floats) -> Mask | None:
-        """Mask (T, J, A) of the points (J,) that are not read at all instants and angles (A,), rad,
-        since lugs press on them or beside; None where no lugs press on a body of revolution.
+        """A mask (T, J, A): at which instants and angles (A,), rad, points (J,) are not read, since
+        lugs press on them or beside them.
+
+        The result is None without lugs, and for bodies that are not of revolution.
         """
 
 
 @dataclass(frozen=True)
 class SpaceSurface:
-    """The surface of a body that is not of revolution in one case (SurfaceField).
+    """The surface of a body that is not of revolution, in one load case (SurfaceField).
 
-    coefficients: gives the amounts (T, L) of unit loads of one phase each.
+    coefficients: returns the amounts (T, L) of unit loads of one phase each.
     """
 
     unit: UnitSurface
@@ -129,7 +133,7 @@ class SpaceSurface:
     plane: SectionPlane | None = None
 
     def amounts(self, loads: PinLoads) -> Floats:
-        """The amounts (T, L, 2), of which the second phase is zero."""
+        """The amounts (T, L, 2), with zero for the second phase."""
         one = self.coefficients(loads)
         return np.stack([one, np.zeros_like(one)], axis=2)
 
@@ -142,4 +146,4 @@ class SpaceSurface:
         """Return None, since there is no section about an axis."""
 
     def unread(self, loads: PinLoads, points: Ints, angles: Floats) -> None:
-        """Return None: points are read in space, not by angles."""
+        """Return None, since points are read in space, not by angles."""

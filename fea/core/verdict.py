@@ -1,7 +1,7 @@
-"""A verdict on the maximum of a case: is it accurate enough, and does one exist at all?
+"""The verdict on the maximum of a case: whether it exists, and whether it is accurate enough.
 
-A model, and the support of its pin, gather evidence: a value, and all parts of its error. It is
-judged once, when nothing can be added any more; so verdict, error and note always agree.
+A model and the support of its pin gather evidence: a value and all parts of its error. The evidence
+is judged once, when it is complete, so that verdict, error and note always agree.
 """
 
 from __future__ import annotations
@@ -41,17 +41,19 @@ TWO_MESHES = Reason(
 
 @dataclass(frozen=True)
 class Evidence:
-    """All that is known of the maximum of a case before it is judged.
+    """The maximum of a case with everything that is needed to judge it.
 
-    value: the maximum, Pa, outside the singular zones; parts: of its error.
+    value: maximum outside the singular zones, Pa.
+    parts: parts of its error.
     location: (x, y, z) in the pin's axes, m.
-    zones: of unbounded stress.
-    excluded: where one of them governs, the maximum outside half and twice the excluded distance,
+    zones: zones of unbounded stress.
+    excluded: where one of these governs, the maximum outside half and twice the excluded distance,
     Pa, without its error.
-    doubt: why the parts do not tell the error; they then do not count as within the tolerance.
+    doubt: reason why the parts do not show the error, which then does not count as within the
+    tolerance.
     omissions: what the model leaves out of the surface's stress.
-    remarks: on the support and on limits, which end the note.
-    why: the reason for the model.
+    remarks: on the support and on limits, at the end of the note.
+    why: reason for the model.
     governing, history, imbalance, solids: as in Maximum.
     """
 
@@ -74,11 +76,11 @@ class Evidence:
 
     @property
     def unbounded(self) -> bool:
-        """Whether nothing is known of the error."""
+        """Whether the error is unknown."""
         return self.doubt is not None and not NO_BOUND.isdisjoint(self.doubt.codes)
 
     def with_parts(self, **parts: Stress) -> Evidence:
-        """The evidence with more parts of the error, Pa, by their names in ErrorParts."""
+        """The evidence with some parts of the error replaced, Pa, by their names in ErrorParts."""
         return replace(self, parts=replace(self.parts, **parts))
 
     def remarked(self, remark: Reason) -> Evidence:
@@ -91,7 +93,7 @@ def evidence_of(
 ) -> Evidence:
     """The evidence of a sequence of meshes.
 
-    Raises: SolveError when the stress is not finite.
+    Raises: SolveError where the stress is not finite.
     """
     last = seen.results[-1]
     if not last.maximum < float("inf"):
@@ -108,7 +110,7 @@ def evidence_of(
 
 
 def zones(result: MeshMaximum, singularities: Sequence[Zone]) -> tuple[SingularZone, ...]:
-    """The singular zones to report."""
+    """The singular zones that the loads of the case make singular, in the form of results."""
     return tuple(
         SingularZone(
             location=inside.location,
@@ -134,10 +136,10 @@ def judge(
     """The maximum of a case with its verdict.
 
     tolerance: of the error, relative.
-    other_place: bounds, Pa, of the place that has less stress, by the values of both: a row is as
-    uncertain as the larger of them.
+    other_place: bounds, Pa, of the place with the smaller value. Its upper bound may exceed that of
+    the evidence; the error of the row then covers it.
 
-    Raises: SolveError where stress is read nowhere.
+    Raises: SolveError where a zone governs and stress is read nowhere outside the zones.
     """
     least, most = other_place or (0.0, 0.0)
     own = evidence.parts.total
@@ -188,10 +190,11 @@ def _unbounded(
     interval: tuple[float, float],
     at_surface: Reason,
 ) -> Reason:
-    """The reason why no maximum exists, and what is known outside the zones.
+    """The reason why no maximum exists, with the stress outside the zones.
 
-    interval: the bounds, Pa, by half and twice the excluded distance; at_surface: the accuracy of
-    the value.
+    value: the maximum outside the zones, Pa.
+    interval: its bounds with half and twice the excluded distance, Pa.
+    at_surface: reason that states the accuracy of the value.
     """
     worst = max(governing, key=lambda zone: zone.max_von_mises)
     ends = " to ".join(f"{end / value - 1.0:+.0%}" for end in interval)

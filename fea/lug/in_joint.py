@@ -206,7 +206,7 @@ def _along(force: Floats, count: int) -> Floats:
 
 def _eye(contact: PressedCases, lug: Lug, ends: Floats, memo: Memo) -> EyeStress:
     model = contact.model
-    alike, highest = model.likeness(lug, ends), model.cells.highest
+    alike, highest = model.flexibility_key(lug, ends), model.cells.highest
     return memo.get(
         ("eye stress", alike, model.cells),
         lambda: eye_stress(model.on_lugs[alike], lug, highest),

@@ -1,1 +1,1 @@
-"""Stress of sections by their section forces."""
+"""The stress of sections from section forces."""

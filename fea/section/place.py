@@ -1,4 +1,4 @@
-"""The largest stress of a pin's sections over all instants of a case, with its error."""
+"""The largest stress of a pin's sections over all instants of a load case, with its error."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from fea.core.pin_loads import PinLoads
 from fea.core.places import SectionPlace
 from fea.section.section_stress import AtSection, SectionField
 
-# Of stress by the forces of a contact, by the meshes of the flexibilities of pin and lugs: elements
-# half as long change it by 0.0002 at most (benchmarks/joints/cells.py).
+# Relative error of the stress in contact from the meshes on which flexibilities are computed.
+# Elements half as long change the stress by at most 0.0002 (benchmarks/joints/cells.py).
 FLEXIBILITY_ERROR = 0.001
 
 
@@ -32,7 +32,7 @@ class FoundSection:
 
     @property
     def lower_end(self) -> float:
-        """The stress less its error, Pa."""
+        """The stress minus its error, Pa."""
         return max(0.0, self.at.value - self.parts.total)
 
     @property
@@ -41,13 +41,13 @@ class FoundSection:
         return self.at.value + self.parts.total
 
     def known(self, tolerance: float) -> bool:
-        """Return whether the error is within a tolerance, relative."""
+        """Return whether the error is within a relative tolerance."""
         return self.parts.total <= tolerance * self.at.value
 
     def place(self, tolerance: float, used: float | None) -> SectionPlace:
-        """The largest stress of sections as a place of the results.
+        """The largest stress of sections in the form of results.
 
-        used: part of the fully plastic section that is used.
+        used: fraction of the fully plastic resistance that is used.
         """
         at = self.at
         return SectionPlace(
@@ -64,14 +64,15 @@ def found_section(
     tolerance: float,
     cells: float | None = None,
 ) -> FoundSection:
-    """The largest stress of sections over a case, also between its instants where it is a motion.
+    """The largest stress of sections over a case; for a motion also between its instants.
 
-    cells: relative error from the contact cells that the forces come from; None where the forces
-    are given. Statics alone gives those exactly; between two clamps they have the error of a beam.
+    cells: relative error from the cells of contact, if contact gives the forces; None where the
+    forces are given. Statics determines given forces exactly, except between two clamps, where they
+    have the error of a beam.
     """
     loads, rise = over_time(answer, loads, between, tolerance)
     at = answer.place(loads)
-    parts = ErrorParts(mesh=0.0, time=rise, model=answer.held_twice(at) * at.value)
+    parts = ErrorParts(mesh=0.0, time=rise, model=answer.error_between_clamps(at) * at.value)
     if cells is not None:
         parts = replace(parts, mesh=FLEXIBILITY_ERROR * at.value, cells=cells * at.value)
     return FoundSection(at, parts, loads.at(np.array([at.instant])))

@@ -1,4 +1,4 @@
-"""A row's number: the larger of surface and section, each with its own error."""
+"""The number of a row: the larger of the stresses of surface and section, each with its error."""
 
 from __future__ import annotations
 
@@ -21,9 +21,12 @@ def row_of(
     tolerance: float,
     links: PinLoads | None = None,
 ) -> Maximum:
-    """The row of a surface's maximum and its section's: the one that governs.
+    """The row, by the larger of the maxima of surface and section.
 
-    links: loads of the links at the section's instant, if they are not the section's own.
+    surface: evidence of the surface.
+    section: largest stress of sections; None without sections.
+    tolerance: of the maximum, relative.
+    links: loads of the links at the section's instant, if the loads of the section are others.
     """
     at_surface = judge(surface, tolerance)
     places = Places("surface", _surface(at_surface))
@@ -70,7 +73,7 @@ def _by_section(
     if at_surface.verdict != "singular":
         row = judge(in_section, tolerance, (at_surface.lower_end, at_surface.upper_end))
         return replace(row, reasons=SECTION_CODES + row.reasons)
-    # Stress at a clamp or a corner has no bound, whatever the section has.
+    # Stress at a clamp or a sharp corner is unbounded, whatever the stress of the section.
     ends = (
         max(at_surface.lower_end, section.lower_end),
         max(at_surface.upper_end, section.upper_end),
@@ -79,9 +82,10 @@ def _by_section(
 
 
 def beside_singular(at_surface: Maximum, evidence: Evidence, ends: tuple[float, float]) -> Maximum:
-    """The row of a singular surface with the maximum of another place.
+    """The row of a singular surface, with the maximum of another place.
 
-    ends: between which the stress is, Pa, at the one or the other.
+    evidence: of the other place.
+    ends: bounds of the larger stress of both places, Pa.
     """
     return replace(
         at_surface,
@@ -95,7 +99,7 @@ def beside_singular(at_surface: Maximum, evidence: Evidence, ends: tuple[float, 
 
 
 def with_contact(peak: Maximum, contact: ContactPlace) -> Maximum:
-    """The peak with the places that only contact has."""
+    """The maximum with the place of contact added."""
     if peak.places is None:
         return peak
     return replace(peak, places=replace(peak.places, contact=contact))

@@ -1,9 +1,9 @@
-"""The stress of a pin's sections by its section forces: sqrt(s^2 + 3 t^2), over every section.
+"""The stress of a pin's sections from section forces: sqrt(s^2 + 3 t^2) over every section.
 
-s is that of the axial force and of bending, t that of torsion and of shear, as Saint-Venant has
-them in a round section, solid or hollow, so that it is exact in elasticity a diameter away from
-loads and changes of shape. It is what stress analysts call membrane and bending: it has no local
-stress, and so depends on no mesh and on no distance from an edge.
+s is the stress by axial force and bending, and t the stress by torsion and shear, by Saint-Venant's
+theory of round sections, solid or hollow. It is exact in elasticity one diameter away from loads
+and changes of shape. It is the membrane and bending stress of stress analysis: it contains no local
+stress, so that it does not depend on a mesh or on a distance from an edge.
 
 Source: fea.beam.round_section, for the shear.
 """
@@ -36,20 +36,23 @@ from geometry.shape.chords import needed
 from pinbase.arrays import Floats, Mask
 
 SECTIONS_BETWEEN_STATIONS = 9  # sections between two stations, both ends included
-WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # of the way from bore to outside, where stress is read
-# Points between two of these, about the angle, and along the pin, near the largest
+WALL_FRACTIONS = np.linspace(0.0, 1.0, 9)  # positions from bore to outside where stress is read
+# Points near the largest stress, through the wall, around the angle, and along the pin.
 CLOSER_POINTS = 33
-COURSE_TOLERANCE = 2e-3  # of the largest stress: what drawing the stress along a pin may lose
-MIN_SECTION_GAIN = 1e-9  # relative: a section must have so much more than another
-CLOSER_ANGLE = np.radians(2.0)  # of that angle
+COURSE_TOLERANCE = 2e-3  # error of the stress drawn along a pin, over the largest stress
+MIN_SECTION_GAIN = 1e-9  # relative excess of stress for which another section is taken
+CLOSER_ANGLE = np.radians(2.0)  # range of angles on both sides of the largest stress
 
 
 @dataclass(frozen=True)
 class AtSection:
-    """The largest stress of sections, Pa, at an instant (its number).
+    """The largest stress of sections, and the section forces there.
 
-    z, r, angle: of the point, m, m, rad, in a cell of the beam.
-    The axial and shear forces, N, bending moment and torque, N m, are those at the point.
+    value: the stress, Pa.
+    instant: number of its instant.
+    cell: number of the beam's cell in which the section is.
+    z, r, angle: of the point, m, m, rad.
+    axial_force, shear_force: N. bending_moment, torque: N m.
     course: pairs of z, m, and the largest stress of the section there, Pa, at the instant.
     """
 
@@ -68,13 +71,13 @@ class AtSection:
 
     @property
     def location(self) -> Point:
-        """The place (x, y, z), m."""
+        """The location (x, y, z), m."""
         return at_angle((self.r, self.z), self.angle)
 
     def plastic_use(self, strength: float, hardened: Sequence[Hardened] = ()) -> float:
-        """The part of the fully plastic section's resistance that is used.
+        """The fraction of the fully plastic section's resistance that is used.
 
-        strength: yield strength, Pa, of a section without a hardened surface.
+        strength: yield strength of a section without a hardened surface, Pa.
         hardened: the hardened stretches of the pin.
         """
         forces = self.shear_force, self.bending_moment, abs(self.axial_force), abs(self.torque)
@@ -85,12 +88,13 @@ class AtSection:
 
 
 class SectionField:
-    """The stress of a pin's sections under any combination of the unit loads of some cases.
+    """The stress of a pin's sections under any amounts of the unit loads of some cases
+    (fea.core.solution.StressMaxima).
 
-    The pin is clamped at surfaces (by its own names), or in balance (fea.core.solution: Answer). It
-    may be of one part alone of a pin with a hardened surface (`of_part`).
+    The pin is clamped at surfaces (by its own names) or in balance. The stress may be restricted to
+    one part of a pin with a hardened surface (`of_part`).
 
-    Raises: as fea.beam.timoshenko.stepped_beam.
+    Raises: errors as fea.beam.timoshenko.stepped_beam.
     """
 
     def __init__(
@@ -108,9 +112,9 @@ class SectionField:
         self._part: StrengthPart | None = None
 
     def of_part(self, part: StrengthPart) -> SectionField:
-        """The stress of the same sections where they belong to a part of one yield strength.
+        """The stress of the same sections, restricted to a part with one yield strength.
 
-        In its core they are read up to the depth at which it begins, beneath the case.
+        In a core, stress is read from the bore or axis up to the case depth.
         """
         other = copy(self)
         other.__dict__.pop("fields", None)
@@ -119,7 +123,7 @@ class SectionField:
 
     @cached_property
     def fields(self) -> MeridianFields:
-        """Stress of each unit load at points of the sections, section by section."""
+        """The stress of each unit load at points of the sections, section by section."""
         inside = self.forces.inside(self._cells, self._z)
         sections = sections_at(self.pin, self.forces, self._cells, self._z)
         by_section = {s: self._at_radii(s, WALL_FRACTIONS) for s in set(sections)}
@@ -138,47 +142,48 @@ class SectionField:
             0,
         )
 
-    def _felt(self, loads: Loads) -> LoadAmounts:
+    def _acting_on_sections(self, loads: Loads) -> LoadAmounts:
         """The loads without those that cause no section forces."""
         amounts = {load: x for load, x in loads.coefficients().items() if loads_sections(load)}
         return LoadAmounts(loads.case, amounts, len(loads))
 
     def maxima(self, loads: Loads, least: float = 0.0) -> Floats:
-        """The largest stress (T,) Pa at every instant, or `least` where it does not exceed that."""
+        """The largest stress at each instant, (T,) Pa, or `least` where it does not exceed that."""
         return self.around(loads).maxima(self.all, least)
 
     def largest(self, loads: Loads) -> tuple[float, int]:
-        """The largest of these (Pa), and the number of its instant."""
+        """The largest of these over all instants, Pa, and the number of its instant."""
         top = self._top(loads)
         return top.value, top.instant
 
     @property
     def all(self) -> Mask:
-        """A mask of all points of the sections, or of the part."""
+        """A mask of all points of the sections, or of those in the part."""
         if self._part is not None:
             return self._part.along(self.fields.points[:, 1])
         return np.ones(len(self.fields.points), dtype=bool)
 
     def around(self, loads: Loads) -> Circumference:
-        """The case on these points."""
-        return Circumference(self.fields, self._felt(loads))
+        """The stress around the circumference at these points, under some loads."""
+        return Circumference(self.fields, self._acting_on_sections(loads))
 
     def _top(self, loads: Loads) -> Crest:
         return self.around(loads).top(self.all)
 
     def place(self, loads: Loads) -> AtSection:
-        """The place and instant of the largest stress, and the section forces there."""
+        """The location and instant of the largest stress, and the section forces there."""
         top = self._top(loads)
-        amounts = shares(self.forces.loads, self._felt(loads))[top.instant]
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))[top.instant]
         at = self._at(self._near(top.point), amounts, top.instant, top.angle)
         return replace(at, course=self._course(loads, top.instant))
 
     def place_of_each(self, loads: Loads) -> list[AtSection]:
-        """The same at every instant by itself, without its course; each to the last bit the same
-        whichever others there are.
+        """The same for each instant by itself, without the course.
+
+        Each result is bitwise independent of which other instants there are.
         """
         top = crest_of_each(self.around(loads), self.all)
-        amounts = shares(self.forces.loads, self._felt(loads))
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))
         return [
             self._at(self._near(point), amounts[k], k, angle)
             for k, (point, angle) in enumerate(
@@ -189,7 +194,9 @@ class SectionField:
     def _at(self, near: NearSections, amounts: Floats, instant: int, angle: float) -> AtSection:
         """The largest stress near a point at an instant.
 
-        amounts: (2, K) of the unit loads. angle: of the point, rad.
+        near: the sections near the point.
+        amounts: of the unit loads, by phase, (2, K).
+        angle: of the point, rad.
         """
         forces = near.inside @ amounts.T
         values, radii, angles = near.largest(forces, angle)
@@ -204,7 +211,7 @@ class SectionField:
     def _course(self, loads: Loads, instant: int) -> tuple[tuple[float, float], ...]:
         """Pairs of z, m, and the largest stress of the section there, Pa, at an instant.
 
-        Sections whose stress follows from their neighbours' are left out.
+        Sections whose stress lies on the line between their neighbours are left out.
         """
         points = np.arange(len(self.fields.points))
         stress, _ = self.around(loads).largest_over_angle(points, np.full(len(points), instant))
@@ -215,10 +222,12 @@ class SectionField:
         return tuple(zip(self._z[keep].tolist(), largest[keep].tolist(), strict=True))
 
     def forces_on(self, loads: Loads, instant: int) -> Callable[[Floats], Floats]:
-        """The forces (S, 3), N, along x, y and z on the part before z (S,), m, at an instant; NaN
-        in clamps and, where statics does not decide, between them.
+        """A function that returns the section forces along x, y and z, (S, 3) N, on the part of the
+        pin before z (S,), m, at an instant.
+
+        They are NaN in clamps, and between two clamps, where statics does not determine them.
         """
-        amounts = shares(self.forces.loads, self._felt(loads))[instant]
+        amounts = shares(self.forces.loads, self._acting_on_sections(loads))[instant]
         known = np.zeros(len(self.forces.sections), dtype=bool)
         for span in self.forces.spans:
             known[span.first : span.last] = not (span.left and span.right)
@@ -233,25 +242,26 @@ class SectionField:
 
         return at
 
-    def held_twice(self, at: AtSection) -> float:
-        """The relative error of the section forces there if the point is between two clamps; else
-        0.
-        """
+    def error_between_clamps(self, at: AtSection) -> float:
+        """The relative error of the section forces at a point between two clamps; 0 elsewhere."""
         spans = self.forces.spans
         (span,) = (s for s in spans if s.first <= at.cell < s.last)
         return between_clamps(self.forces, span)
 
     def _at_radii(self, section: Circle, parts: Floats) -> tuple[Floats, Floats]:
-        """Radii (R,), m, at parts of the way from bore to outside, or to where the part begins, and
-        the stress there per V, M, N, T, (R, 6, 4).
+        """The radii of points of the wall, (R,) m, and the stress there per V, M, N, T, (R, 6, 4).
+
+        parts: positions of the points, 0 at the bore and 1 at the outer surface, or at the case
+        depth for a core.
         """
         beneath = self._part.least_depth if self._part else 0.0
         radii = section.inner + parts * (section.outer - beneath - section.inner)
         return radii, section_stress(section, radii, self.nu)
 
     def _near(self, point: int) -> NearSections:
-        """The sections near a point, by its number, between the same stations, and points of them
-        near it.
+        """The sections near a point, between the same stations, with points of the wall near it.
+
+        point: number of the point.
         """
         if point not in self._near_points:
             row, number = divmod(point, len(WALL_FRACTIONS))
@@ -277,10 +287,13 @@ class SectionField:
 
 @dataclass(frozen=True)
 class NearSections:
-    """Sections near a point of the largest stress, and R points of the wall in each.
+    """Sections near the point of the largest stress, with R points of the wall in each.
 
-    cell: of the beam. z: (S,) m, that of the point first. inside: V, M, N, T (S, 4, K) of unit
-    loads. radii: (S, R) m. per_force: stress (S, R, 6, 4), Pa, per V, M, N, T.
+    cell: number of the beam's cell.
+    z: of the S sections, (S,) m; the section of the point comes first.
+    inside: V, M, N, T of the unit loads, (S, 4, K).
+    radii: of the points, (S, R) m.
+    per_force: stress per V, M, N, T, (S, R, 6, 4).
     """
 
     cell: int
@@ -292,7 +305,9 @@ class NearSections:
 
     @cached_property
     def products(self) -> Floats:
-        """The products (S, R, 7) of stresses, of which s^2 + 3 t^2 is the sum with the forces'."""
+        """The products of stresses per force, (S, R, 7), whose sum with the products of the forces
+        is s^2 + 3 t^2.
+        """
         m, n = (self.per_force[..., ZZ, q] for q in (MOMENT, AXIAL))
         v, w = (self.per_force[..., row, SHEAR] for row in (RZ, TZ))
         t = self.per_force[..., TZ, TORQUE]
@@ -300,9 +315,10 @@ class NearSections:
         return np.stack(squares, axis=2)
 
     def largest(self, forces: Floats, angle: float) -> tuple[Floats, Floats, Floats]:
-        """The largest stress (S,), Pa, of each section, its radius, m, and its angle, rad.
+        """The largest stress of each section, (S,) Pa, its radius, (S,) m, and its angle, (S,) rad.
 
-        forces: V, M, N, T (S, 4, 2), by phase, V and M of x and y. angle: of the point, rad.
+        forces: V, M, N, T by phase, (S, 4, 2); the phases of V and M are along x and y.
+        angle: of the point, rad.
         """
         turns = angle + np.linspace(-CLOSER_ANGLE, CLOSER_ANGLE, CLOSER_POINTS)
         waves = np.stack([np.cos(turns), np.sin(turns)])
@@ -322,10 +338,9 @@ class NearSections:
 def sections_at(
     pin: Pin, forces: InternalForces, cells: NDArray[np.intp], z: Floats
 ) -> list[Circle]:
-    """The sections of a pin at z (S,), m, each as seen from the cell (S,) of the beam that it is
-    in.
+    """The sections of a pin at z (S,), m, on the side of the beam's cells (S,).
 
-    Those of a cone have its diameter at z.
+    The section of a cone has its diameter at z.
     """
     starts, stations = np.array(pin.stations), forces.stations
     middle = 0.5 * (stations[cells] + stations[cells + 1])

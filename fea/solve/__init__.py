@@ -1,1 +1,1 @@
-"""The ladder of meshes: which model, how fine, what verdict."""
+"""The choice of support and model for a pin, and the refinement of meshes."""

@@ -1,12 +1,12 @@
-"""The one place that chooses support and model: the smallest that are accurate enough.
+"""The choice of support and model, made only here: the smallest that are accurate enough.
 
-beam            prescribed loads, where its error is enough to decide   (fea.beam.error_model)
-harmonic        any body of revolution                                  (fea.harmonic.evaluate)
-harmonic+local  such a body with cuts, solid about these                (fea.cut.evaluate)
-solid           any other body, and to check the others                 (fea.solid.evaluate)
+beam            prescribed loads, where its error allows it              (fea.beam.error_model)
+harmonic        any body of revolution                                   (fea.harmonic.evaluate)
+harmonic+local  a body of revolution with cuts, solid around the cuts    (fea.cut.evaluate)
+solid           any other body, and to check the others                  (fea.solid.evaluate)
 
-foundation      lugs as springs along a beam, where that decides        (fea.support.foundation)
-contact         lugs in contact, on cells until these are fine enough   (fea.support.contact)
+foundation      lugs as springs along a beam, where its error allows it  (fea.support.foundation)
+contact         lugs in contact, on cells refined until fine enough      (fea.support.contact)
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from fea.support.prescribed import PrescribedSupport
 from fea.support.support import PinProblem, Solution, StressReading, Support
 from geometry import ArgumentError, CutPin, Pin, body_of_revolution
 
-if TYPE_CHECKING:  # the steps import the supports and models that they use
+if TYPE_CHECKING:  # each step imports the supports and models that it uses
     from fea.cut.evaluate import LocalSolids
 
 CONTACT_REASON = Reason("contact, harmonic: the pin is held by its lugs", ("contact",))
@@ -57,8 +57,9 @@ BEAM_DECIDES = Reason(f"beam: {DECIDED_TEXT}", ("beam-decides",))
 class Rung:
     """One step of the choice.
 
-    solve: returns the cases that this step answers well enough.
-    trial: whether a failure goes on to the next step.
+    support: holds the pin.
+    solve: returns the solutions of the cases for which this step is accurate enough.
+    trial: whether the next step follows a failure.
     """
 
     support: Support
@@ -67,11 +68,11 @@ class Rung:
 
 
 class Refused(SolveError):
-    """A model does not apply, for a reason that the next step states."""
+    """The error that a model does not apply; the next step states the reason."""
 
 
 def rungs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
-    """The steps in their order; the last answers whatever is left.
+    """Yield the steps in their order; the last one solves all cases that are left.
 
     Raises: ArgumentError for a model that does not apply to the pin.
     """
@@ -105,7 +106,7 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     from fea.support.foundation.held import FoundationSupport
 
     joints, foundation = requirement.joints, FoundationSupport()
-    if problem.material.hardened:  # which foundations give no stress beneath the surface for
+    if problem.material.hardened:  # foundations give no stress beneath the surface
         if joints == "foundation":
             raise ArgumentError(
                 f"pin {problem.pin.name} has a hardened surface, beneath which only contact gives "
@@ -126,7 +127,9 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
     elif requirement.goal == "decide":
         resolutions = (ROUGH, *RESOLUTIONS)
     alone: Alone | None = None if requirement.compared else "alone"
-    # Those that all cases share: where arcs are narrow, they may do for a decision, too.
+    # The first resolutions are tried for all cases, since they may decide the required factor even
+    # where arcs of contact are narrow. After them, cases with wide and with narrow arcs have
+    # resolutions of their own.
     shared = 2 if resolutions[0] is ROUGH else 1
     steps = list(zip_longest(resolutions, resolutions[1:]))
     for cells, finer in steps[:shared]:
@@ -138,7 +141,7 @@ def _in_lugs(problem: PinProblem, requirement: Requirement) -> Iterator[Rung]:
 
 
 def _beam(at: Attempt) -> dict[str, Solution]:
-    """The cases for which a beam is accurate enough; all if it is requested."""
+    """Solve the cases for which a beam is accurate enough; all cases if it is requested."""
     requirement, material = at.requirement, at.problem.material
     auto = requirement.model == "auto"
     out = {}
@@ -164,9 +167,11 @@ def _beam(at: Attempt) -> dict[str, Solution]:
 
 
 def beam_refused(requirement: Requirement, zones: Collection[Zone]) -> bool:
-    """Whether no beam will do: below the error of any beam, or where it cannot see a singularity.
+    """Whether the beam model is excluded in advance.
 
-    zones: of the loads.
+    It is if another model is requested. With automatic choice it is if the tolerance is below the
+    error of any beam, or if there is a singularity that a beam does not see.
+    zones: singular under the loads.
     """
     if requirement.model != "auto":
         return requirement.model != "beam"
@@ -176,19 +181,19 @@ def beam_refused(requirement: Requirement, zones: Collection[Zone]) -> bool:
 
 
 def unseen_by_beams(zones: Collection[Zone]) -> list[str]:
-    """The kinds of singularities that no beam sees."""
+    """The kinds of singularities that a beam does not see."""
     return sorted({zone.kind for zone in zones if zone.kind != "edge of a load"})
 
 
 def _beam_instead(at: Attempt) -> dict[str, Solution]:
-    """The beam solutions, with their own error, where no harmonic mesh could be solved."""
+    """Solve the cases by beams, with the error of these, since no harmonic mesh could be solved."""
     remark = Reason(f"; the harmonic model failed: {at.failure}")
     why = Reason("beam: the harmonic model failed", ("harmonic-failed",))
     return {case.case: with_reason(by_beam(at, case, remark), why) for case in at.problem.cases}
 
 
 def _refined(at: Attempt, model: Model, why: Reason | None = None) -> dict[str, Solution]:
-    """Solve the cases on finer and finer meshes of a model."""
+    """Solve the cases on successively finer meshes of a model."""
     posed = posed_for(model, at.held, at.problem, at.requirement)
     why = why or chosen(at.requirement, model.name, at.problem.material, posed.zones)
     return refine(at, model, posed, why)
@@ -217,9 +222,11 @@ def _solid(at: Attempt) -> dict[str, Solution]:
 
 
 def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
-    """The model with solids about the cuts of a pin.
+    """The model with solids around the cuts of a pin.
 
-    Raises: Refused where it does not apply.
+    first: first mesh of the uncut pin, if it is shared.
+
+    Raises: Refused where the model does not apply.
     """
     from fea.cut.evaluate import LocalSolids
     from fea.cut.region import corner_refusal, loaded_bands, refusal, unringed
@@ -229,7 +236,7 @@ def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
     whole = unringed(pin)
     loaded = [name for case in problem.cases for name in case.surfaces] if whole is pin else []
     if not clamps:
-        loaded += whole.connections  # which react the imbalance
+        loaded += whole.connections  # all bands react the imbalance
     starts = tuple(at.held.start(case.case) for case in problem.cases)
     zones = zones_of(pin, clamps, problem.material, starts, at.requirement)
     why = refusal(whole, clamps, loaded) or corner_refusal(whole, zones)
@@ -239,9 +246,9 @@ def _local_solids(at: Attempt, first: FirstMesh | None = None) -> LocalSolids:
 
 
 def _contact(at: Attempt) -> dict[str, Solution]:
-    """The cases whose contact cells are fine enough, solved.
+    """Solve the cases whose cells of contact are fine enough.
 
-    The held pin is returned too where these leave no case open.
+    Cases in which the error of the cells leaves a required factor open are left to finer cells.
     """
     from fea.cut.region import RingedCutPin
     from fea.support.contact.held import HeldContact, cells_matter
@@ -288,10 +295,10 @@ def _foundation_requested(at: Attempt) -> dict[str, Solution]:
 
 
 def _foundation(at: Attempt) -> dict[str, Solution]:
-    """The cases that beams on foundations answer within the tolerance, or show to be safe whatever
-    contact does.
+    """Solve the cases that beams on foundations answer within the tolerance, or show to be safe
+    with contact.
 
-    A pin that fails is left to contact, since the amount of its overload matters.
+    A pin that fails is left to contact, since the amount of the overload matters.
     """
     from fea.support.foundation.held import HeldFoundation
 
@@ -323,9 +330,9 @@ def with_reason(solution: Solution, why: Reason) -> Solution:
 def chosen(
     requirement: Requirement, model: str, material: Material, zones: Collection[Zone]
 ) -> Reason:
-    """The reason why this model, and no smaller one, is used.
+    """The reason why this model is used, and no smaller one.
 
-    zones: of a body of revolution under the loads.
+    zones: singular in a body of revolution under the loads.
     """
     if requirement.model == model:
         return Reason(f"{model}: requested", ("requested",))
@@ -351,9 +358,9 @@ def chosen(
 
 
 def by_beam(at: Attempt, case: PinLoads, remark: Reason = NO_REASON) -> Solution:
-    """The solution of a case by the beam model, with its own error.
+    """The solution of a case by the beam model, with the error of a beam.
 
-    remark: appended to its note.
+    remark: appended to the note.
     """
     start, held, pin = time.perf_counter(), at.held, body_of_revolution(at.held.pin)
     assert pin is not None

@@ -1,4 +1,4 @@
-"""Finer and finer meshes of one model, until every case of a pin is converged or decided."""
+"""The refinement of one model's meshes until every case of a pin is converged or decided."""
 
 from __future__ import annotations
 
@@ -36,10 +36,8 @@ LOCAL_MODEL: Final = "harmonic+local"
 
 
 def sequence_of(pin: PinLike, model: str) -> MeshSequence | None:
-    """The sequence of meshes by which a model, given by its name, refines a pin; None for a model
-    without meshes.
-    """
-    # Models are imported where they are used: a plain pin does not wait for those of others.
+    """The sequence of meshes of a model, given by its name, for a pin; None without meshes."""
+    # Models are imported where they are used, so that a plain pin does not wait for the others.
     if model == "solid":
         from fea.solid.evaluate import GIVEN_SOLID_MESHES, SOLID_MESHES
 
@@ -52,7 +50,7 @@ def sequence_of(pin: PinLike, model: str) -> MeshSequence | None:
 
 
 def count_loads(cases: tuple[PinLoads, ...]) -> int:
-    """The number of unit loads of all the cases, at least one."""
+    """The number of different unit loads in all cases, at least one."""
     return max(1, len({load for case in cases for load in case.coefficients()}))
 
 
@@ -63,12 +61,12 @@ def zones_of(
     cases: tuple[PinLoads, ...],
     requirement: Requirement,
 ) -> tuple[Zone, ...]:
-    """Zones of unbounded stress in any of the cases.
+    """The zones of unbounded stress in any of the cases.
 
-    Those of a pin with cuts are the zones of its profile, which end where its cuts begin.
+    The zones of a pin with cuts are those of its profile, which end where cuts begin.
     """
-    # Only the profile of a pin with cuts is a body of revolution, for which zones are known. Where
-    # a cut opens, the profile is not the pin's shape, so that the zone is cut short.
+    # For a pin with cuts, only the profile is a body of revolution, for which zones are known.
+    # Where a cut opens, the profile is not the pin's shape, so that zones are limited there.
     openings: list[tuple[float, float]] = []
     if pin.cuts:
         from fea.cut.region import unringed
@@ -85,9 +83,11 @@ def zones_of(
 
 @dataclass(frozen=True)
 class Attempt:
-    """A held pin, the cases that are left to solve, and the requirement on them.
+    """An attempt to solve cases of a held pin.
 
-    failure: the failure of the step before, if it failed.
+    problem: the pin with the cases that are left to solve.
+    requirement: on these cases.
+    failure: error of an earlier step that failed; None if none did.
     """
 
     held: HeldPin
@@ -97,64 +97,66 @@ class Attempt:
     failure: Exception | None = None
 
     def between(self, case: str) -> Between | None:
-        """The loads on the pin at any times of a motion; None without a motion."""
+        """The loads on the pin at any times of a case; None for a case without a motion."""
         links = self.problem.between.get(case)
         return links and partial(changed, self.held.press, links)
 
 
 def refine(at: Attempt, model: Model, posed: MeshProblem, why: Reason) -> dict[str, Solution]:
-    """Solve finer and finer meshes until every case is converged or decided, or a limit is reached.
+    """Solve successively finer meshes until every case is converged or decided, or a limit is
+    reached.
 
-    posed: the problem of the held pin as the model takes it (`posed_for`).
-    why: the reason for the model.
+    posed: the problem of the held pin in the form that models take (`posed_for`).
+    why: reason for the model.
 
     Raises: MeshError, SolveError.
     """
     held, requirement = at.held, at.requirement
     meshes, material = model.meshes, at.problem.material
-    seen = {
+    histories = {
         c.case: MeshHistory(held.pin.name, c.case, model.name, (), (), meshes) for c in posed.cases
     }
     notes = dict(held.notes)
     before: MeshBefore | None = None
     for level in range(requirement.meshes or meshes.max_meshes):
         if before is not None and (limit := _limit(model, posed, before, level)) is not None:
-            notes = {case: notes.get(case, NO_REASON) + limit for case in seen}
+            notes = {case: notes.get(case, NO_REASON) + limit for case in histories}
             break
         at.progress(f"pin {held.pin.name}, {model.name} model, mesh {level + 1}")
         start = time.perf_counter()
-        mesh, below = model.solve(posed, level, before), before
-        # The first mesh shows between which instants of a motion the maximum may lie; these are
-        # added for all meshes.
+        mesh, previous = model.solve(posed, level, before), before
+        # The first mesh shows between which instants of a motion the maximum may lie. Instants are
+        # added there for all meshes.
         if not level:
             posed = replace(posed, cases=_through_time(at, mesh, posed))
         for case in posed.cases:
             maximum, end = mesh.maximum(case), time.perf_counter()
-            seen[case.case] = seen[case.case].appended(maximum, end - start)
+            histories[case.case] = histories[case.case].appended(maximum, end - start)
             start = end
-        if all(accurate_enough(requirement, material, s) for s in seen.values()):
+        if all(accurate_enough(requirement, material, x) for x in histories.values()):
             break
-        # The results show the model where the next mesh must be finer.
-        before = MeshBefore(mesh, {case: s.results[-1] for case, s in seen.items()})
-    # Verdicts come last, since the instant of the maximum is refined on the last mesh alone.
+        # The results on this mesh show where the next one must be finer.
+        before = MeshBefore(mesh, {case: x.results[-1] for case, x in histories.items()})
+    # Verdicts come last, since the instant of the maximum is refined only on the last mesh.
     out = {}
     for case in posed.cases:
-        loads, history = _at_crest(mesh, case, seen[case.case], at.between(case.case))
+        loads, history = _at_crest(mesh, case, histories[case.case], at.between(case.case))
         reasons = notes.get(case.case, NO_REASON), why + met(requirement, material, history)
         reading = _reading(reasons, mesh, loads, history)
-        if material.hardened and below is not None and below.solution is not None:
-            coarser = below.solution.field(case.case)
+        if material.hardened and previous is not None and previous.solution is not None:
+            coarser = previous.solution.field(case.case)
             reading = replace(reading, coarser=coarser, mesh_ratio=meshes.ratio)
         out[case.case] = held.finished(reading, requirement)
     return out
 
 
 def _limit(model: Model, posed: MeshProblem, before: MeshBefore, solved: int) -> Reason | None:
-    """Why the next mesh is too large, by the unknowns that the model is likely to need: the reason
-    is empty beyond the model's own limit, which is no news after enough meshes. None where it is
+    """The reason why the next mesh is too large, from its likely number of unknowns; None if it is
     not too large.
 
-    solved: number of meshes.
+    The reason is empty if the model's own limit is exceeded after enough meshes, since that needs
+    no remark.
+    solved: number of meshes solved so far.
     """
     meshes = model.meshes
     unknowns = meshes.unknowns_after(max(r.at_once or r.unknowns for r in before.results))
@@ -175,8 +177,9 @@ def _limit(model: Model, posed: MeshProblem, before: MeshBefore, solved: int) ->
 def posed_for(
     model: Model, held: HeldPin, problem: PinProblem, requirement: Requirement
 ) -> MeshProblem:
-    """The problem of a held pin as models take it; with local solids, of the profile of a pin with
-    cuts.
+    """The problem of a held pin in the form that models take.
+
+    For a model with local solids, the pin is the profile of the pin with cuts.
     """
     pin, clamps, material = held.pin, held.clamps, problem.material
     cases = tuple(held.start(case.case) for case in problem.cases)
@@ -192,7 +195,7 @@ def posed_for(
 
 
 def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reason:
-    """The reason why the meshes of a case were enough, or why there are no more."""
+    """The reason why the meshes of a case were enough, or why there are no finer ones."""
     enough = decides(requirement, material, seen)
     if enough and seen.case in requirement.minor:
         return Reason(f"; another case governs: {DECIDED_TEXT}", (MINOR_CASE,))
@@ -209,8 +212,8 @@ def met(requirement: Requirement, material: Material, seen: MeshHistory) -> Reas
 
 
 def too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str | None:
-    """The reason why a mesh with so many unknowns takes more memory than there is; None if it does
-    not.
+    """The memory that a mesh with so many unknowns needs and the memory allowed, as text; empty if
+    that is enough.
     """
     units = count_loads(problem.cases)
     section, local = (units if model.name == m else 0 for m in ("harmonic", LOCAL_MODEL))
@@ -220,13 +223,13 @@ def too_much_memory(problem: MeshProblem, model: Model, unknowns: float) -> str 
 def _through_time(at: Attempt, mesh: MeshSolution, posed: MeshProblem) -> tuple[PinLoads, ...]:
     """The cases with the instants that matter according to the first mesh.
 
-    Beside an error that exceeds the tolerance, such as that of contact's cells, instants to the
-    tolerance gain nothing.
+    Where another error, such as that of the cells of contact, exceeds the tolerance, instants are
+    resolved only to that error.
     """
     out = []
     for case in posed.cases:
         if (between := at.between(case.case)) is not None:
-            tolerance = max(posed.tolerance, at.requirement.besides.get(case.case, 0.0))
+            tolerance = max(posed.tolerance, at.requirement.other_errors.get(case.case, 0.0))
             case = through_time(mesh.field(case.case), case, between, tolerance)
         out.append(case)
     return tuple(out)
@@ -235,27 +238,27 @@ def _through_time(at: Attempt, mesh: MeshSolution, posed: MeshProblem) -> tuple[
 def _at_crest(
     mesh: MeshSolution, case: PinLoads, seen: MeshHistory, between: Between | None
 ) -> tuple[PinLoads, MeshHistory]:
-    """The loads with the instant at which the last mesh has its maximum, and the history with the
-    rise between instants.
+    """Return the loads with the instant of the maximum on the last mesh added, and the history with
+    the possible rise between instants.
     """
     if between is None:
         return case, seen
-    # The error between instants is how much higher the maximum may be than at the instants solved,
-    # the crest included; a crest that is no new instant leaves the mesh result as it is.
+    # The error between instants is the possible rise of the maximum above that at all instants,
+    # including the crest. If the crest is not a new instant, the mesh result stays as it is.
     field, last = mesh.field(case.case), seen.results[-1]
-    more = with_crest(field, case, between)
-    if len(more) > len(case):
-        last = mesh.maximum(more)
-    last = replace(last, between=rise_between(field, more, between))
-    return more, replace(seen, results=(*seen.results[:-1], last))
+    loads = with_crest(field, case, between)
+    if len(loads) > len(case):
+        last = mesh.maximum(loads)
+    last = replace(last, between=rise_between(field, loads, between))
+    return loads, replace(seen, results=(*seen.results[:-1], last))
 
 
 def _reading(
     reasons: tuple[Reason, Reason], mesh: MeshSolution, loads: PinLoads, seen: MeshHistory
 ) -> StressReading:
-    """The evidence of the last mesh for a case, with its field of stress.
+    """The evidence of the last mesh for a case, with its stress field.
 
-    reasons: the remarks, and why this model and mesh.
+    reasons: remarks, and the reason for this model and mesh.
     """
     instant, (remarks, why) = seen.results[-1].instant, reasons
     governing = loads.at(np.array([instant]))

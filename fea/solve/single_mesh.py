@@ -1,7 +1,7 @@
-"""One mesh of one model, from the mesh to the maximum, for comparisons of models.
+"""The maximum on one mesh of one model, for comparisons of models.
 
-All models leave out the same singularities, those at edges of loads included: what they say differs
-by the models and their meshes alone. A harmonic mesh is the one that `fea.solve.solve` makes
+All models leave out the same singularities, including those at edges of loads. Results therefore
+differ only by the models and their meshes. A harmonic mesh is the one that `fea.solve.solve` makes
 at that level.
 """
 
@@ -25,9 +25,10 @@ from geometry.mesh.elements import Element
 
 @dataclass(frozen=True)
 class Problem:
-    """A pin, clamped at surfaces (by the pin's names), in one case.
+    """A pin in one load case.
 
-    distance: as in fea.solve.solve.
+    clamps: clamped surfaces, by the pin's names.
+    distance: as in Requirement.
     """
 
     pin: PinLike
@@ -38,8 +39,8 @@ class Problem:
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:
-        """The zones where stress is not read, of a body of revolution; other bodies find theirs on
-        the mesh.
+        """The zones in which stress is not read, for a body of revolution; the zones of other
+        bodies are found on the mesh.
         """
         return singularities_of(self.pin, self.material, self.clamps, (self.loads,), self.distance)
 
@@ -49,8 +50,8 @@ class ModelMesh:
     """A mesh of a model.
 
     element: of the solid model.
-    level: 0 is the first mesh of a run; each further one is finer by the square root of 2 (with
-    local solids by fea.cut.local_solution.LOCAL_MESH_RATIO), those below 0 are coarser.
+    level: 0 for the first mesh of a run. Each further mesh is finer by the square root of 2 (with
+    local solids by fea.cut.local_solution.LOCAL_MESH_RATIO); meshes below 0 are coarser.
     """
 
     model: Literal["beam", "harmonic", "harmonic+local", "solid"]
@@ -63,11 +64,11 @@ def result_on(
 ) -> MeshMaximum:
     """The maximum on one mesh.
 
-    before: the mesh result of the harmonic model, with local solids or not, at the level below,
-    where a run has one, by which it decides where its elements are small.
+    before: result of the harmonic model, with local solids or without, on the mesh below, if a run
+    has one. It decides where elements are small.
 
-    Raises: MeshError, SolveError; ValueError for a beam or section of a pin that is not a body of
-    revolution and for loads that a beam cannot take.
+    Raises: MeshError, SolveError; ArgumentError for a beam of a pin that is not a body of
+    revolution, and for local solids of a pin without cuts.
     """
     pin, loads = problem.pin, problem.loads
     if rung.model == "beam":
@@ -82,7 +83,7 @@ def result_on(
 
 
 def _posed(problem: Problem, rung: ModelMesh) -> tuple[Model, MeshProblem]:
-    """The model, and the problem as it takes it."""
+    """The model, and the problem in the form that it takes."""
     pin, material, clamps, loads = problem.pin, problem.material, problem.clamps, problem.loads
     posed = MeshProblem(
         pin, material, clamps, (loads,), problem.singularities, distance=problem.distance

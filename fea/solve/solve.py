@@ -1,4 +1,4 @@
-"""A pin in all its cases, by the smallest support and model that meet the requirement."""
+"""The solution of a pin in all load cases, by the smallest support and model that are enough."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ DEFAULT_REQUIREMENT = Requirement()
 def solve(
     problem: PinProblem, requirement: Requirement = DEFAULT_REQUIREMENT, progress: Progress = silent
 ) -> tuple[Solution, ...]:
-    """Solutions of a pin's cases, one each.
+    """The solutions of a pin, one for each load case.
 
     Raises: ArgumentError for a model that does not apply to the pin, and for lugs that do not fit;
     MeshError, SolveError.
     """
     if problem.material.hardened:
-        # Each of its parts has a limit of its own, so meshes are refined for the value.
+        # Each part of the pin has its own limit; therefore meshes are refined for the value.
         require_turned(problem, requirement)
         requirement = replace(requirement, goal="value")
     done: dict[str, Solution] = {}
@@ -41,7 +41,7 @@ def solve(
         here = replace(problem, cases=left)
         try:
             held = rung.support.hold(here, requirement, held, progress)
-            for case in left:  # what cannot be held needs no model
+            for case in left:  # a case that cannot be held needs no model
                 if peak := held.failures.get(case.case):
                     done[case.case] = Solution(peak, None, case)
             here = replace(here, cases=tuple(c for c in left if c.case not in done))
@@ -55,7 +55,7 @@ def solve(
 
 
 def require_turned(problem: PinProblem, requirement: Requirement) -> None:
-    """Raise ArgumentError for a pin with a hardened surface where no stress field is known by
+    """Raise an ArgumentError for a pin with a hardened surface if the model gives no stress by
     depth.
     """
     pin, model = problem.pin, requirement.model
@@ -75,11 +75,11 @@ def solve_pin(
     requirement: Requirement = DEFAULT_REQUIREMENT,
     between: Mapping[str, Between] | None = None,
 ) -> tuple[Solution, ...]:
-    """Solutions of a pin under prescribed loads; clamps: names of the clamped surfaces."""
+    """The solutions of a pin under prescribed loads. clamps: names of the clamped surfaces."""
     problem = PinProblem(pin, material, (), cases, between or {}, clamps=clamps)
     return solve(problem, requirement)
 
 
 def solve_in_lugs(problem: PinProblem, requirement: Requirement) -> tuple[Solution, ...]:
-    """Solutions of a pin in contact with its lugs, also where foundations would do."""
+    """The solutions of a pin in contact with its lugs, even where foundations would be enough."""
     return solve(problem, replace(requirement, joints="contact"))

@@ -1,1 +1,1 @@
-"""The pin in its lugs: frictionless contact, in place of clamps and prescribed pressures."""
+"""The supports of a pin: clamps with prescribed loads, contact with lugs, elastic foundations."""

@@ -1,4 +1,4 @@
-"""The bands of a pin that its lugs hold, cut into rings."""
+"""The bands of a pin that lugs hold, cut into rings."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Bands:
-    """The rings (R,) of all bands, in their order.
+    """The rings (R,) of all bands, band by band.
 
-    z, length: middle and length of a ring, m.
-    radius: m.
-    band: the number of each ring's band.
-    gap: clearance and rounding of the edge, on the radius, m.
-    link: (B,) the number of the link to which each band's lug belongs, by default one for each.
-    Lugs of one link shift together, and share its force as they can.
+    z, length: middle and length of each ring, m.
+    radius: of each ring, m.
+    band: number of each ring's band.
+    gap: radial gap of each ring by clearance and edge rounding, m.
+    link: number of the link to which each band's lug belongs, (B,); by default each lug has a link
+    of its own. Lugs of one link shift together, and their stiffness decides how they share its
+    force.
     """
 
     z: Floats
@@ -40,17 +41,17 @@ class Bands:
 
     @property
     def middle(self) -> float:
-        """The z, m, midway between the first and the last ring's middle, about which couples of the
-        body force act.
+        """The z, m, midway between the first and the last ring's middle; couples of the body force
+        are about this point.
         """
         return float(0.5 * (self.z.min() + self.z.max()))
 
     def largest(self, of_rings: Floats) -> Floats:
-        """The largest of the values of each band's rings (T, R), (T, B)."""
+        """The largest value on each band, (T, B), of values of rings (T, R)."""
         return np.stack([of_rings[:, on].max(axis=1) for on in self._on], axis=1)
 
     def sums(self, of_rings: Floats) -> Floats:
-        """The sums of the values of each band's rings (T, R, ..), (T, B, ..)."""
+        """The sum over the rings of each band, (T, B, ..), of values of rings (T, R, ..)."""
         return np.stack([of_rings[:, on].sum(axis=1) for on in self._on], axis=1)
 
     @property

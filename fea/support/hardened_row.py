@@ -1,8 +1,8 @@
-"""The row of a pin with a hardened surface: that of its parts which has the least factor.
+"""The row of a pin with a hardened surface, which is that of the part with the least factor.
 
-Each part of one yield strength has a largest stress of the field and one of sections, of its own
-points. The stress field beneath the surface is the model's, so that in a fillet it falls with depth
-as the notch has it; that of sections falls linearly.
+A part has one yield strength. Its largest stress in the field and its largest stress in sections
+are read at its own points. The stress field beneath the surface is that of the model, so that
+stress in a fillet falls with depth like that of a notch. Stress in sections falls linearly.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from fea.support.records import JointResult
 from fea.support.support import StressReading
 from geometry import Pin
 
-# Of the difference between two meshes: as of fea.core.peak.discretisation_error.
+# Safety factor on the difference between two meshes, as in fea.core.peak.discretisation_error.
 TWO_MESH_FACTOR = 3.0
 PART_REASONS = {
     part: Reason(f"; {text} governs", (f"{part}-governs",))
@@ -45,11 +45,14 @@ PART_REASONS = {
 
 @dataclass(frozen=True)
 class FoundPart:
-    """The largest stress of a part, Pa, in the field ("surface") or in a section.
+    """The largest stress of a part.
 
+    place: "surface" for the stress field, "section" for sections.
+    value: the stress, Pa.
     errors: the parts of its error, Pa.
-    location: (x, y, z), m. depth: there, m; None for what is not hardened.
-    loads: at its instant.
+    location: (x, y, z), m.
+    depth: of the location, m; None for a part that is not hardened.
+    loads: at the instant of the largest stress.
     """
 
     part: StrengthPart
@@ -67,12 +70,12 @@ class FoundPart:
 
     @property
     def use(self) -> float:
-        """The stress over the yield strength."""
+        """The stress divided by the yield strength."""
         return self.value / self.part.strength
 
     def ends(self, strength: float) -> tuple[float, float]:
-        """The stress less and plus its error, Pa, as of a part of another strength with the same
-        factor.
+        """The bounds of the stress with its error, Pa, converted to a part of another strength with
+        the same factors.
         """
         scale, error = strength / self.part.strength, self.errors.total
         return scale * max(0.0, self.value - error), scale * (self.value + error)
@@ -88,12 +91,16 @@ class FoundPart:
 
 @dataclass(frozen=True)
 class PartSearch:
-    """The fields in which the largest stresses of parts are looked for.
+    """The fields in which the largest stresses of parts are searched for.
 
-    reading: of the field. pin: as it is meshed. between: loads on the pin at any times.
-    surface: the evidence of the surface, whose relative error that of other parts is at least.
-    sections: of the pin. on_sections: loads for these, and between their instants.
-    cells: relative errors of the cells of a contact: beneath the surface and of sections; None
+    reading: result of the stress field.
+    pin: as it is meshed.
+    between: loads on the pin at any times.
+    surface: evidence of the surface; other parts have at least its relative error.
+    sections: stress field of the sections.
+    on_sections: loads for the sections, and these at any times.
+    tolerance: of the maximum, relative.
+    cells: relative errors of the cells of contact, beneath the surface and of sections; None
     without contact.
     """
 
@@ -107,17 +114,18 @@ class PartSearch:
     cells: tuple[float, float] | None = None
 
     def of(self, parts: Sequence[StrengthPart]) -> list[FoundPart]:
-        """The largest stresses of all parts, of field and sections."""
+        """The largest stresses of all parts, in the field and in sections."""
         every = [place for part in parts for place in (self.in_field(part), self._in_section(part))]
         if self.reading.loads.pressed is not None:
             every += [self._beside_lugs(part) for part in parts if part.part == "core"]
         return every
 
     def _beside_lugs(self, part: StrengthPart) -> FoundPart:
-        """The largest stress of a core beneath free surface, also beside lugs.
+        """The largest stress of a core beneath the free surface, also beside lugs.
 
-        There the field has the stress of contact, too, which is no part of a row: so it is at most
-        that of the surface less what it falls linearly, which in a notch it does faster.
+        Beside lugs the field includes the stress of contact, which does not belong to a row. The
+        value is therefore limited to the stress of the surface, reduced as if it fell linearly to
+        the axis; in a notch stress falls faster.
         """
         core, radius = self.in_field(part, "beside"), self.pin.largest_diameter / 2.0
         most = self.surface.value * (1.0 - part.least_depth / radius)
@@ -126,7 +134,7 @@ class PartSearch:
         return replace(core, value=most, errors=self._errors(part, most, 0.0, False))
 
     def in_field(self, part: StrengthPart, where: Where = "away") -> FoundPart:
-        """The largest stress of a part in the field; where: as of PartField."""
+        """The largest stress of a part in the field. where: as in PartField."""
         answer = self.reading.answer
         assert isinstance(answer, HarmonicField)
         field = PartField(answer, self.pin, part, where)
@@ -142,7 +150,12 @@ class PartSearch:
         return FoundPart(part, "surface", top.value, errors, top.location, top.depth, now)
 
     def _errors(self, part: StrengthPart, value: float, rise: float, beneath: bool) -> ErrorParts:
-        """The error of a stress, Pa, by that of the surface."""
+        """The error of a stress in proportion to that of the surface.
+
+        value: the stress, Pa.
+        rise: possible rise of the stress between instants, Pa.
+        beneath: whether the stress is beneath contact.
+        """
         of, scale = self.surface.parts, value / (self.surface.value or 1.0)
         cells = of.cells * scale
         if self.cells is not None and (beneath or part.part == "core"):
@@ -174,10 +187,10 @@ def hardened_row(
     """The row of the part with the least factor.
 
     pin: as it is meshed.
-    row: of surface and section as if all had one strength, which has their places.
-    surface: its evidence.
-    found: every part, in the field and in sections.
-    governing: the loads at the instant of a part.
+    row: the row of surface and section as if the whole pin had one strength.
+    surface: evidence of the surface.
+    found: the largest stresses of all parts, in the field and in sections.
+    governing: returns the loads at the instant of a part's largest stress.
     """
     worst = max(found, key=lambda x: x.use)
     strength, of = worst.part.strength, worst.part.part
@@ -195,7 +208,7 @@ def hardened_row(
     if at_surface.verdict != "singular":
         out = judge(evidence, tolerance, bounds)
     else:
-        # Stress at a clamp or a corner has no bound, whatever lies beneath.
+        # Stress at a clamp or a sharp corner is unbounded, whatever the stress beneath.
         own = worst.ends(strength)
         scale = strength / _strength_at(pin, found, at_surface.location)
         ends = scale * at_surface.lower_end, scale * at_surface.upper_end
@@ -210,7 +223,7 @@ def hardened_row(
 
 
 def _places(pin: Pin, places: Places | None, found: Sequence[FoundPart]) -> Places:
-    """The places with the strengths that they have, and the parts, the worst first."""
+    """The places with their yield strengths, and the parts in order of decreasing use."""
     assert places is not None
     stated: dict[StrengthPart, FoundPart] = {}
     for x in found:
@@ -230,7 +243,7 @@ def _of_z(found: Sequence[FoundPart], z: float) -> Iterator[StrengthPart]:
 
 
 def _strength_at(pin: Pin, found: Sequence[FoundPart], location: Point | None) -> float:
-    """The yield strength at a place of the surface, Pa; the least of those that meet there."""
+    """The yield strength at a location of the surface, Pa; the least where parts meet."""
     assert location is not None
     r, z = math.hypot(*location[:2]), location[2]
     at = np.array([[r, z]])
@@ -238,8 +251,8 @@ def _strength_at(pin: Pin, found: Sequence[FoundPart], location: Point | None) -
 
 
 def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPart]) -> ContactPlace:
-    """The place of contact with the largest stress beneath it of what has the strength of a core,
-    or of what is not hardened, by its strength.
+    """The place of contact with the stress beneath contact in the core or in an unhardened part,
+    whichever uses more of its strength.
     """
     softer = [part for part in parts if part.part != "case"]
     deepest = max((search.in_field(part, "beneath") for part in softer), key=lambda x: x.use)
@@ -257,9 +270,11 @@ def in_core(place: ContactPlace, search: PartSearch, parts: Sequence[StrengthPar
 def range_of_row(
     joint: JointResult | None, row: Maximum, material: Material, pin: Pin
 ) -> JointResult | None:
-    """A range of the stress at the surface, which foundations give, as of the part that governs a
-    row: the stress over which case or core yield if it falls linearly to the axis. In notches it
-    falls faster, so that this is safe.
+    """The joint with its range converted from the stress at the surface, which foundations give, to
+    the stress of the part that governs the row.
+
+    Both are related by the surface stress at which case or core yield if the stress falls linearly
+    to the axis. In notches it falls faster, so that this is safe.
     """
     if joint is None or joint.range is None or row.strength is None:
         return joint

@@ -41,7 +41,11 @@ class PrescribedSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldPrescribed:
-        """Hold the pin as it is; a case out of balance is rigid, unless bands can react it."""
+        """Hold the pin by its clamps.
+
+        Without clamps, a case whose loads are not in balance is rigid, unless the bands can react
+        the imbalance.
+        """
         if isinstance(coarser, HeldPrescribed):
             return coarser
         pin = problem.pin
@@ -53,7 +57,12 @@ class PrescribedSupport:
 
 @dataclass(frozen=True)
 class HeldPrescribed(UnderLinkLoads):
-    """A pin under prescribed loads (fea.support.support.HeldPin)."""
+    """A pin under prescribed loads (fea.support.support.HeldPin).
+
+    failures: for each case that is rigid, its maximum.
+    imbalance: for each case, the relative force and couple that the bands react; None if
+    negligible.
+    """
 
     problem: PinProblem
     failures: Mapping[str, Maximum]
@@ -62,13 +71,11 @@ class HeldPrescribed(UnderLinkLoads):
 
     @property
     def clamps(self) -> tuple[str, ...]:
-        """The clamps of the problem, by the names of surfaces."""
+        """The names of the clamped surfaces."""
         return tuple(self.pin.surface(name) for name in self.problem.clamps)
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
-        """The solution with the largest stress of sections, where the pin is a body of
-        revolution.
-        """
+        """The judged solution; for a body of revolution with the largest stress of sections."""
         loads, instant, material = reading.loads, reading.instant, self.problem.material
         case = loads.case
         evidence = replace(reading.evidence, imbalance=self.imbalance.get(case))
@@ -106,8 +113,8 @@ def balanced(
 ) -> tuple[dict[str, Maximum], dict[str, tuple[float, float] | None], dict[str, Reason]]:
     """Check the equilibrium of the loads on an unclamped pin.
 
-    Returns, by case, the maxima of those that its bands cannot react, the imbalance that they do
-    react, and the note on it.
+    Return three mappings by case: the maxima of cases whose imbalance the bands cannot react, the
+    relative imbalance that the bands react, and notes on that imbalance.
     """
     balances = {case.case: _balance(pin, case, material) for case in cases}
     shares = {case: imbalance(pin, balance) for case, balance in balances.items()}
@@ -123,8 +130,9 @@ def balanced(
 
 
 def _balance(pin: PinLike, case: PinLoads, material: Material) -> Balance:
-    """The balance of the loads as they are given; couples of pressures are those that contact has
-    found.
+    """The balance of the loads as they are given.
+
+    Couples of contact pressures do not count as an imbalance, since contact balances them.
     """
     pressed = case.links is not case
     carried = Carried(couple=True) if pressed else NO_SUPPORT
@@ -132,7 +140,9 @@ def _balance(pin: PinLike, case: PinLoads, material: Material) -> Balance:
 
 
 def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
-    """Force and couple that the bands react, relative; None if negligible."""
+    """The force that the bands react, over the largest load, and the couple, over that load times
+    the pin's length; None if negligible.
+    """
     if not balance.largest:
         return None
     force = balance.force / balance.largest
@@ -141,7 +151,7 @@ def imbalance(pin: PinLike, balance: Balance) -> tuple[float, float] | None:
 
 
 def _reacted(share: tuple[float, float]) -> Reason:
-    """The imbalance that the bands react, as the end of a note."""
+    """The imbalance that the bands react, as the last part of a note."""
     force, couple = share
     return Reason(
         f"; the bearing bands react a residual imbalance: a force of {force:.2g} of the largest "

@@ -1,4 +1,4 @@
-"""Results of a pin's joint at the governing instant of a case: loads of its lugs, and the range."""
+"""The results of a pin's joint in a case: loads of its lugs, ranges, and stress of the lugs."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from pinbase.dimensions import Force, Forces, Length, Lengths, Moments, Stress, 
 
 LineLoad = Annotated[float, "force length^-1"]
 Couple = Annotated[float, "moment"]
-FRICTION = "friction"  # the property of a joint whose range only adds to the stress
-TOGETHER = "together"  # several at once, each at the end of its range that counts
+FRICTION = "friction"  # a property whose variation can only raise the upper end of a range
+TOGETHER = "together"  # several properties at once, each at one end of its range
 
 
 @dataclass(frozen=True)
 class LostFit:
-    """A lug in which a pin is pressed no longer at the temperature of a case.
+    """A lug whose press fit is lost at the temperature of a case.
 
-    where: the lug, with the temperature at which the pin becomes loose in it, in words.
-    given, needed: the least interference there, and the least that holds, both without the
-    temperature.
+    where: the lug and the temperature at which the fit becomes loose, in words.
+    given: least interference of the fit, without the change of temperature.
+    needed: least interference that would hold, without the change of temperature.
     """
 
     where: str
@@ -33,16 +33,17 @@ class BandContact:
     """A band in its lug.
 
     force: of the link on the pin.
-    contact_angle: half of the arc in contact, degrees, where it is widest.
-    line_load: pairs of z and of the load per length there (mean over a ring) in the direction of
-    the force; where it is negative the other side of the bore carries.
+    contact_angle: half of the arc in contact where it is widest, degrees.
+    mean_pressure: force over diameter and length.
+    line_load: pairs of z and load per length (mean over a ring) in the direction of the force; a
+    negative load acts on the other side of the bore.
     couple: reaction of the lug's tilt, a moment on the link.
     clearance, outer_diameter: of the lug.
-    ends: z of the rings' ends, one more than there are rings; empty where load is not given by
+    ends: z of the rings' ends, one more than there are rings; empty where the load is not given by
     rings.
-    mean_pressure: the force over diameter and length.
-    friction: coefficient of the lug. friction_torque: the largest torque between pin and lug by it,
-    over all instants; None without friction.
+    friction: coefficient of the lug.
+    friction_torque: largest friction torque between pin and lug over all instants; None without
+    friction.
     """
 
     name: str
@@ -60,16 +61,17 @@ class BandContact:
 
 @dataclass(frozen=True)
 class Variation:
-    """The maximum with one property of the joint changed.
+    """The maximum with a property of the joint changed, or with several.
 
-    what, value: the property, and its value or state, in words.
-    length: the value where it is one, the largest if it differs from lug to lug.
-    interval: of the maximum with the error of the model, where that is part of the range.
-    beneath: the largest stress beneath the contact then (fea.core.places), None where only the
+    what, value: name of the property, and its value or state, in words.
+    length: the value if it is a length, the largest if it differs from lug to lug.
+    interval: bounds of the maximum with the error of the model, where that is part of the range.
+    beneath: largest stress beneath contact (fea.core.places) with the change; None where only the
     maximum is known.
-    across: the largest shear force or moment across the pin then, over that of the joint as given,
-    whichever grows more. surface: the same of the largest stress on the free surface. lugs: the
-    same of the force on each lug whose force grows.
+    across: growth of the largest shear force or bending moment, whichever is larger: the value with
+    the change over that of the joint as given.
+    surface: growth of the largest stress on the free surface.
+    lugs: growth of the force on each lug whose force grows.
     """
 
     what: str
@@ -85,10 +87,11 @@ class Variation:
 
 def range_ends(stress: float, variations: Iterable[Variation]) -> tuple[float, float]:
     """The ends of the range of a maximum over variations of the joint, with the error of the model
-    where that is a part of them; friction only raises the upper one.
+    where variations have an interval.
 
-    Friction multiplies by the ratio that it has alone, since it is not solved with the others.
-    stress: the maximum with the joint as given.
+    Friction only raises the upper end. Its ratio alone is a factor on that end, since it is not
+    solved together with the other variations.
+    stress: maximum with the joint as given, Pa.
     """
     ends, rubbed = [stress], [stress]
     for x in variations:
@@ -103,10 +106,10 @@ def range_ends(stress: float, variations: Iterable[Variation]) -> tuple[float, f
 class JointRange:
     """The range of the maximum over the uncertain properties of the joint.
 
-    max_von_mises: its ends; friction only raises the upper one, since what it takes off the stress
-    while a load grows is not relied on.
-    model: "contact" or "foundation", whose error is included.
-    assumed: whether no lugs were given.
+    max_von_mises: ends of the range. Friction only raises the upper end, since the stress that it
+    takes off while a load grows is not relied on.
+    model: "contact", or "foundation", whose error is included.
+    assumed: whether the lugs are assumed, since none were given.
     """
 
     max_von_mises: tuple[Stress, Stress]
@@ -117,8 +120,10 @@ class JointRange:
     def without(self, what: str, stress: float) -> JointRange:
         """The range without the variations of one property.
 
-        The others multiply by the ratios that they have alone: together they are solved with it.
-        stress: the maximum von Mises stress with the joint as given.
+        The ratios of the other properties alone are multiplied, since combinations of several
+        properties were solved together with this one.
+        what: name of the property.
+        stress: maximum von Mises stress with the joint as given.
         """
         rest = tuple(x for x in self.variations if x.what not in (what, TOGETHER))
         low = high = 1.0
@@ -129,19 +134,19 @@ class JointRange:
 
     @property
     def across(self) -> float:
-        """The largest shear force or moment across the pin, over that of the joint as given."""
+        """The growth of the largest shear force or moment, relative to the joint as given."""
         return self._largest("across")
 
     @property
     def surface(self) -> float:
-        """The largest stress on the free surface, over that of the joint as given.
+        """The growth of the largest stress on the free surface, relative to the joint as given.
 
-        Where a section governs it may grow more than the maximum does.
+        Where a section governs, this stress may grow more than the maximum.
         """
         return self._largest("surface")
 
     def _largest(self, ratio: str) -> float:
-        """The largest of the ratios of variations; friction multiplies, as it does the stress."""
+        """The largest ratio over the variations; that of friction is a further factor."""
         rubbed, others = (
             max(
                 (getattr(x, ratio) for x in self.variations if (x.what == FRICTION) is so),
@@ -153,13 +158,16 @@ class JointRange:
 
     @property
     def lugs(self) -> dict[str, float]:
-        """The largest force on each lug whose force grows, over that of the joint as given."""
-        return dict(sorted(pair for x in self.variations for pair in x.lugs))  # the last counts
+        """The growth of the largest force on each lug whose force grows, relative to the joint as
+        given.
+        """
+        # Pairs are sorted, so that the largest ratio of each lug comes last and is kept.
+        return dict(sorted(pair for x in self.variations for pair in x.lugs))
 
     def growth(self, stress: float | None) -> float:
-        """The most by which the stress of the pin or a force across it grows.
+        """The largest growth of the pin's stress, or of a force or moment across it.
 
-        stress: the maximum von Mises stress with the joint as given.
+        stress: maximum von Mises stress with the joint as given.
         """
         return max(self.across, self.max_von_mises[1] / stress if stress else 1.0, 1.0)
 
@@ -170,18 +178,20 @@ class LugStress:
 
     wall: "bore", "bushing" (its bore) or "hole" (of the lug about a bushing).
     place: "free" where nothing presses on the wall, "beneath" the pin, or beneath a "bushing".
-    max_hoop_stress: the largest tension along the wall.
-    angle: of the largest von Mises stress from the shank, degrees. z: along the pin. time: None
-    without a motion.
-    error_estimate: of max_von_mises, the sum of its parts: mesh and sectors, rings through the
-    thickness, sampling in time.
-    assumed: what the study does not state.
-    interface: of a pressed bushing in its hole, "bonded" or "frictionless": friction is between
-    the two, and the larger stress counts. other_interface: the stress with the other one.
-    interference: of a bushing whose interference has a range, that of the largest stress, at the
-    temperature of the study's dimensions.
-    over_joint: the largest stress with its error over the uncertain properties of the joint, over
-    that of the joint as given.
+    max_hoop_stress: largest tension along the wall.
+    angle: of the largest von Mises stress from the shank, degrees.
+    z: of that stress, along the pin.
+    time: None without a motion.
+    error_estimate: of max_von_mises, the sum of its parts: mesh and sectors (`mesh`), rings through
+    the thickness (`rings`), and sampling in time (`sampling`).
+    assumed: assumptions where the study states nothing.
+    interface: of a pressed bushing in its hole, "bonded" or "frictionless". Friction lies between
+    the two, and the interface with the larger stress counts.
+    other_interface: stress with the other interface.
+    interference: of a bushing whose interference has a range, the value that gives the largest
+    stress, at the temperature of the study's dimensions.
+    over_joint: growth of the largest stress with its error over the uncertain properties of the
+    joint, relative to the joint as given.
     """
 
     connection: str
@@ -212,13 +222,14 @@ class LugStress:
 
 @dataclass(frozen=True)
 class JointForces:
-    """The shear force and bending moment (T, Z) across the pin at z (Z,) at all instants of the
-    case.
+    """The section forces along the pin at all instants of the case.
 
-    times: (T,), None without a motion.
+    z: of the sections, (Z,).
+    times: (T,); None without a motion.
+    shear, moment: shear force and bending moment, (T, Z).
+    lugs: names of the lugs.
     forces: of the lugs on the pin along x and y, (T, L, 2).
-    axial, torque: the size of the axial force and of the torque (T, Z); None where they are not
-    known to act.
+    axial, torque: magnitudes of the axial force and of the torque, (T, Z); None where unknown.
     """
 
     z: Lengths
@@ -233,14 +244,16 @@ class JointForces:
 
 @dataclass(frozen=True)
 class JointResult:
-    """The contact of the pin with its lugs.
+    """The results of the pin's joint with its lugs.
 
-    model: "contact", "foundation" or "prescribed", with a range alone.
-    bending_moment: the largest along the pin; bending_moments: pairs of z and moment.
-    range: None where it was not computed.
-    remark: why not, or what it leaves out.
-    along: the pin at all instants, None for a prescribed joint.
-    lugs: the stress of lugs whose shank is known.
+    model: "contact", "foundation", or "prescribed", which has only a range.
+    bands: the bands in their lugs.
+    bending_moment: largest along the pin.
+    bending_moments: pairs of z and bending moment.
+    range: over the uncertain properties of the joint; None where it was not computed.
+    remark: why there is no range, or what the range leaves out.
+    along: section forces along the pin at all instants; None for a prescribed joint.
+    lugs: stress of the lugs whose shank is known.
     """
 
     model: str

@@ -1,4 +1,4 @@
-"""The interface of supports: the loads of a pin's links, as loads on its surface."""
+"""The interface of supports, which turn the loads of a pin's links into loads on its surface."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def silent(_: str) -> None:
 class PinProblem:
     """A pin to be solved under the loads of its links.
 
-    lugs: those that hold it in contact; without any it has clamps (surfaces by the pin's names) and
-    prescribed loads.
-    cases: loads of the links.
-    between: for the cases that are motions, the loads at any times; in others only the given
+    lugs: the lugs that hold the pin; without lugs it has clamps and prescribed loads.
+    cases: loads of the links, one item for each load case.
+    between: for each case that is a motion, the loads at any times; in other cases only the given
     instants count.
-    also: by case, other loads under which its stress will be requested.
-    memo: of flexibilities, meshes and unit fields, shared with other problems.
+    also: for each case, other loads under which stress will be requested.
+    clamps: clamped surfaces, by the pin's names.
+    memo: flexibilities, meshes and unit fields, shared with other problems.
     """
 
     pin: PinLike
@@ -54,15 +54,15 @@ class PinProblem:
     memo: Memo | None = None
 
     def __post_init__(self) -> None:
-        # Where a structure reacts along the axis in any case, it is among the surfaces in all.
+        # If a structure reacts axial loads in any case, it is among the surfaces in all cases.
         mass = (self.material.density or 0.0) * self.pin.volume
         every = (*self.cases, *self.also.values())
         if any(pulled(self.pin, self.lugs, x, mass) for x in every):
             whole = partial(structure_reacts, self.pin, self.lugs, mass)
             self._change({x.case: whole for x in self.cases}, whole)
-        # A link states moments in a whole case, also where these pass through zero. Loads of all
-        # cases have the same seats, so that they can be solved together; and what acts under any of
-        # them is solved for all.
+        # A link states moments in a whole case, also at instants at which they pass through zero.
+        # The loads of all cases have the same seats, so that they can be solved together. Unit
+        # loads that act in any case are solved for all.
         length, seats, pulls = self.pin.length, self._seats(), self._pulls()
         tilting = {case.case: case.tilting_links(length) for case in self.cases}
         prescribed = () if self.lugs else tuple(self.also.values())
@@ -76,7 +76,10 @@ class PinProblem:
         self._change(known, partial(replace, seats=seats, pulls=pulls))
 
     def _change(self, of: Mapping[str, LoadsChange], other: LoadsChange) -> None:
-        """Change the loads of each case in its own way, and those of other cases (`also`)."""
+        """Change the loads of each case.
+
+        of: for each case, its change. other: the change for loads of other cases in `also`.
+        """
         cases = tuple(of[x.case](x) for x in self.cases)
         also = {case: of.get(case, other)(x) for case, x in self.also.items()}
         between = {c: partial(changed, of[c], x) for c, x in self.between.items() if c in of}
@@ -84,7 +87,7 @@ class PinProblem:
             object.__setattr__(self, name, value)
 
     def completed(self, links: PinLoads) -> PinLoads:
-        """Other loads of a case, with what is known of them in the whole case."""
+        """Other loads of a case, with the attributes that the whole case determines."""
         like = next((x for x in self.cases if x.case == links.case), None)
         if like is None:
             return links
@@ -96,7 +99,9 @@ class PinProblem:
         )
 
     def _pulls(self) -> tuple[tuple[str, int], ...]:
-        """The forces along the axis, by sense, and torques of links in lugs, in any loads."""
+        """The axial forces, by sense, and the torques that links in lugs exert in any of the loads
+        (PinLoads.pulls).
+        """
         out = dict[tuple[str, int], None]()
         for x in (*self.cases, *self.also.values()) if self.lugs else ():
             torques = np.broadcast_to(x.moments, x.forces.shape)[..., 2]
@@ -106,8 +111,9 @@ class PinProblem:
         return tuple(out)
 
     def _seats(self) -> dict[str, tuple[str, str]]:
-        """The seats at which axial forces of links in lugs enter, by the links that exert some; a
-        pin with cuts takes them on the bands alone.
+        """The seats of axial forces, for each link in a lug that exerts any.
+
+        The result is empty for a pin with cuts, which takes axial forces only on its bands.
         """
         pin = body_of_revolution(self.pin)
         if pin is None or not self.lugs:
@@ -120,7 +126,7 @@ class PinProblem:
 
 
 class HeldPin(Protocol):
-    """A pin held in one way, ready for any loads of its links. It lives in one process."""
+    """A pin held by one support, ready for any loads of its links. It stays in one process."""
 
     @property
     def problem(self) -> PinProblem:
@@ -132,7 +138,7 @@ class HeldPin(Protocol):
 
     @property
     def clamps(self) -> tuple[str, ...]:
-        """Constrained surfaces, by the pin's names."""
+        """The constrained surfaces, by the pin's names."""
 
     @property
     def failures(self) -> Mapping[str, Maximum]:
@@ -140,14 +146,14 @@ class HeldPin(Protocol):
 
     @property
     def notes(self) -> Mapping[str, Reason]:
-        """The notes on the support, by case, that belong to the maximum."""
+        """The notes on the support for each case, which are appended to the note of the maximum."""
 
     @property
     def finest(self) -> bool:
-        """Whether no finer resolution may follow."""
+        """Whether no finer resolution follows."""
 
     def start(self, case: str) -> PinLoads:
-        """The loads on the pin at the instants from which the solution of a case starts."""
+        """The loads on the pin at the initial instants of a case."""
 
     def press(self, links: PinLoads) -> PinLoads:
         """The loads on the pin under loads of its links.
@@ -156,24 +162,24 @@ class HeldPin(Protocol):
         """
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Return whether a finer resolution could not change the answer, before stress is
-        refined.
+        """Return whether the resolution of the support is fine enough for a case, or the last.
+
+        This is known before meshes are refined.
         """
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """The requirement on the meshes, given the support's own error."""
+        """The requirement on the meshes, which takes the support's own error into account."""
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
-        """The solution of a case, judged once, with the results of the support.
+        """The judged solution of a case, with the results of the support.
 
-        These are its part of the error, sections, contact, and the range over the uncertain
-        properties of the joint. All of them follow from the loads at one instant, which are found
-        once.
+        These are the support's part of the error, sections, contact, and the range over the
+        uncertain properties of the joint.
         """
 
 
 class UnderLinkLoads:
-    """The part of a held pin on which the loads of the links act as they are."""
+    """The common part of held pins on which the links' loads act unchanged."""
 
     problem: PinProblem
     finest = True
@@ -193,7 +199,7 @@ class UnderLinkLoads:
         return links
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Return True, since nothing is discretised."""
+        """Return True, since the support has no discretisation."""
         return True
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
@@ -202,7 +208,7 @@ class UnderLinkLoads:
 
 
 class Support(Protocol):
-    """An interface that turns the loads of a pin's links into loads on its surface."""
+    """A way to hold a pin, which turns the loads of its links into loads on its surface."""
 
     def hold(
         self,
@@ -213,8 +219,8 @@ class Support(Protocol):
     ) -> HeldPin:
         """Hold the pin.
 
-        coarser: the same pin on the resolution before, whose candidates for the governing instant
-        are kept.
+        coarser: the same pin held on the resolution before, whose candidates for the governing
+        instant are kept.
 
         Raises: ArgumentError for lugs that do not fit; MeshError, SolveError where no case can be
         held.
@@ -223,12 +229,13 @@ class Support(Protocol):
 
 @dataclass(frozen=True)
 class StressReading:
-    """The answer of a model to a case: evidence that has not been judged yet.
+    """The result of a model for a case, before it is judged.
 
-    answer: the stress on the last mesh.
-    loads: on the pin, with the instants added to find the maximum.
-    instant: index of the governing one.
-    coarser: the stress on the mesh before the last, None where only one was solved.
+    answer: stress on the last mesh.
+    loads: on the pin, with the instants that were added to find the maximum.
+    instant: number of the governing instant.
+    coarser: stress on the mesh before the last; it is given only for a hardened surface and after
+    more than one mesh.
     mesh_ratio: element size of that mesh over that of the last.
     """
 
@@ -242,12 +249,14 @@ class StressReading:
 
 @dataclass(frozen=True)
 class Solution:
-    """A case: its maximum and the stress behind it, None for a pin that cannot be solved.
+    """The solution of a case: its maximum, and the stress field.
 
-    loads: on the pin, with the instants added to find the maximum.
-    instant: index of the governing one.
+    answer: stress field; None where the case could not be solved.
+    loads: on the pin, with the instants that were added to find the maximum.
+    instant: number of the governing instant.
     held: the held pin.
-    joint, pressure: the results of contact at the governing instant.
+    joint: results of the joint at the governing instant.
+    pressure: contact pressure at the governing instant.
     """
 
     peak: Maximum
@@ -266,8 +275,8 @@ class Solution:
 
     @property
     def rings(self) -> Pin | None:
-        """The body of revolution on which the loads of lugs act, its bands cut; None without lugs,
-        and of pins with cuts.
+        """The body of revolution with its bands cut into rings, on which contact pressures act;
+        None without contact, and for pins with cuts.
         """
         if self.held is None or self.pressure is None:
             return None

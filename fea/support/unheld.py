@@ -1,5 +1,7 @@
-"""Cases in which the lugs of a pin cannot hold it, by the rule of fea.core.equilibrium, whatever
-model there is of the lugs; and how a case without a solution is called.
+"""The results of cases without a solution, in particular where the lugs cannot hold the pin.
+
+Whether lugs can hold a pin follows from the rule of fea.core.equilibrium, whatever the model of the
+lugs.
 """
 
 from __future__ import annotations
@@ -9,12 +11,14 @@ from fea.core.peak import Maximum
 from fea.support.lugs.fit import balance_in_lugs
 from fea.support.support import PinProblem
 
-# Codes of errors by which a model says that its lugs do not react the loads.
+# Codes of the errors with which a model reports that its lugs do not react the loads.
 NOT_HELD = "not-in-equilibrium", "couple-not-reacted"
 
 
 def unheld(problem: PinProblem, model: str) -> dict[str, Maximum]:
-    """The results by case of the cases that the lugs cannot hold: `rigid`, without numbers."""
+    """The results of the cases in which the lugs cannot hold the pin, by case: `rigid`, without
+    numbers.
+    """
     pin, out = problem.pin, dict[str, Maximum]()
     for case in problem.cases:
         of = balance_in_lugs(pin, problem.lugs, case, problem.material.density)
@@ -26,7 +30,9 @@ def unheld(problem: PinProblem, model: str) -> dict[str, Maximum]:
 
 
 def unsolved(pin: str, case: str, model: str, error: SolveError) -> Maximum:
-    """The result of a case without a solution: `rigid` where the lugs do not hold the pin."""
+    """The result of a case without a solution: `rigid` where the lugs do not hold the pin,
+    otherwise `failed`.
+    """
     rigid = error.code in NOT_HELD
     codes = (error.code,) if rigid else ()
     return Maximum(pin, case, model, "rigid" if rigid else "failed", str(error), reasons=codes)

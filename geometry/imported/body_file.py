@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-CAD_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")  # every other file is a mesh
+CAD_SUFFIXES = (".step", ".stp", ".brep", ".iges", ".igs")  # all other files are meshes
 
 
 @dataclass(frozen=True)
 class Place:
     """A band of a body from a file.
 
-    z: it is the outermost surface between two z, m, in the file's axes.
-    surface: or it is the file's surface of that name.
+    The band is given either by `z` or by `surface`.
+    z: two z, m, in the file's axes, between which the outermost surface is the band.
+    surface: name of the file's surface that is the band.
     connection: whether a link with the band's name bears on it.
     """
 
@@ -27,7 +28,7 @@ class Place:
 class BodyFile:
     """A CAD or mesh file with the shape of a pin, whose axis is the file's z-axis.
 
-    name: of the pin. unit: m per unit of the file. places: its bands.
+    name: name of the pin. unit: m per unit of the file. places: bands of the pin.
     """
 
     name: str

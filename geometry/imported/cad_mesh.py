@@ -1,6 +1,6 @@
 """The mesh of a CAD file (STEP, BREP, IGES) by curved quadratic tetrahedra of gmsh.
 
-The solid is split by planes at the ends of bands, so that these lie on edges of elements.
+Planes at the ends of bands split the solid, so that the ends of bands lie on edges of elements.
 """
 
 from __future__ import annotations
@@ -23,31 +23,32 @@ from geometry.mesh.gmsh_tetrahedra import collect, repair
 from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.band import GeometryError
 
-MAX_PLANE_CURVATURE = 1e-9  # of a plane surface, times the body's size
-INNER_FRACTIONS = np.linspace(0.0, 1.0, 24)[1:-1]  # of a face's parameters; none is in the middle
+MAX_PLANE_CURVATURE = 1e-9  # curvature times the body's size, below which a surface is plane
+INNER_FRACTIONS = np.linspace(0.0, 1.0, 24)[1:-1]  # of a face's parameters, avoiding the middle
 
 
 def cad_mesh(file: BodyFile, size: MeshSize, most: float = math.inf) -> SolidMesh:
     """The mesh of the solid in a file, m.
 
     Its boundaries are the file's surfaces, by their names or as "face 1" and so on.
-    most: unknowns that are allowed.
+    most: largest number of unknowns that is allowed.
 
-    Raises: GeometryError when the file is not geometry or does not contain one solid; MeshError.
+    Raises: GeometryError when the file is not geometry or does not contain exactly one solid;
+    MeshError when the solid cannot be meshed.
     """
     cause = f"very small faces and edges in {file.path.name}"
     return sound_mesh(lambda finer: _mesh(file, finer, most), size, file.name, cause)
 
 
 def cad_volume(file: BodyFile) -> float:
-    """Volume of the solid in a file, m^3. Raises: GeometryError as `cad_mesh`."""
+    """Volume of the solid in a file, m^3. Raises: GeometryError as for `cad_mesh`."""
     with gmsh_model(file.name) as gmsh:
         solids = solids_of(gmsh, file)
         return solid_volume(gmsh, solids[0]) * file.unit**3
 
 
 def _mesh(file: BodyFile, size: MeshSize, most: float) -> SolidMesh:
-    """A mesh of the solid of this size, m, after repair."""
+    """A mesh of this size of the solid in a file, m, after repair."""
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = solids_of(gmsh, file)
         z = dict.fromkeys(v for place in file.places if place.z for v in place.z)
@@ -63,7 +64,7 @@ def _mesh(file: BodyFile, size: MeshSize, most: float) -> SolidMesh:
 
 
 def solids_of(gmsh: Any, file: BodyFile) -> list[tuple[int, int]]:
-    """Read a CAD file into gmsh's model; returns the entity of its only solid, in a list.
+    """Read a CAD file into gmsh's model; return the entity of its only solid, in a list.
 
     Raises: GeometryError when the file is not geometry or does not contain one solid.
     """
@@ -116,7 +117,7 @@ def face_names(file: BodyFile, tags: list[int]) -> dict[int, str]:
 def _split(
     gmsh: Any, file: BodyFile, solids: list[tuple[int, int]], cuts: Iterable[float]
 ) -> dict[str, list[int]]:
-    """Split the solids at z = `cuts` (file's unit); returns tags of the surface's faces by name."""
+    """Split the solids at z = `cuts` (file's unit); return tags of the outer faces by name."""
     model, occ = gmsh.model, gmsh.model.occ
     tags = [tag for _, tag in model.getEntities(2)]
     names = face_names(file, tags)
@@ -125,7 +126,8 @@ def _split(
     inner = [z for z in cuts if z0 + 1e-6 * size < z < z1 - 1e-6 * size]
     if not inner:
         return _by_name({tag: [tag] for tag in tags}, names)
-    # gmsh reports wrongly which face becomes which here: compare pieces with copies of whole faces.
+    # gmsh's report on which face becomes which is wrong here, so pieces are compared with copies of
+    # the whole faces.
     whole = [tag for _, tag in occ.copy([(2, tag) for tag in tags])]
     extent = (x0 - size, y0 - size), (x1 - x0 + 2 * size, y1 - y0 + 2 * size)
     planes = [(2, occ.addRectangle(*extent[0], z, *extent[1])) for z in inner]
@@ -143,7 +145,7 @@ def _split(
 
 
 def _by_name(pieces: dict[int, list[int]], names: dict[int, str]) -> dict[str, list[int]]:
-    """Tags of pieces by the names of the faces of which they are parts."""
+    """Tags of pieces of faces, by the name of the whole face."""
     named: dict[str, list[int]] = {}
     for tag, faces in pieces.items():
         named.setdefault(names[tag], []).extend(faces)
@@ -151,10 +153,14 @@ def _by_name(pieces: dict[int, list[int]], names: dict[int, str]) -> dict[str, l
 
 
 def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
-    """Index of the face among `whole` of which a face is a part: it lies in its box and on it."""
+    """Index of the face among `whole` of which a face is a part.
+
+    The part lies within the bounding box of the whole face, to the distance `slack`, and on it.
+    """
     model = gmsh.model
     around = model.getBoundary([(2, face)], combined=False, oriented=False)
-    # The rim alone would do for an end face and the side it closes, where both are splines.
+    # The rim alone is not enough: an end face and the side that it closes share it, and both may be
+    # splines.
     x = np.concatenate([_inside(gmsh, face), *(_on(gmsh, curve) for _, curve in around)])
 
     def holds(other: int) -> bool:
@@ -168,9 +174,9 @@ def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
 
 
 def _inside(gmsh: Any, face: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Points of a face off its edges, (P, 3): the first of a grid of parameters that lies on it.
+    """A point of a face off its edges, (1, 3): the first on the face of a grid of parameters.
 
-    There is none where the face is thinner than the grid.
+    The result is empty, (0, 3), where the face is thinner than the grid.
     """
     low, high = gmsh.model.getParametrizationBounds(2, face)
     for share in product(INNER_FRACTIONS, INNER_FRACTIONS):
@@ -181,7 +187,7 @@ def _inside(gmsh: Any, face: int) -> np.ndarray[Any, np.dtype[np.float64]]:
 
 
 def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
-    """Set the element size by the curvature of every face, finer at the ends of bands."""
+    """Set the element size from the curvature of every face, finer at the ends of bands."""
     model = gmsh.model
     x0, y0, z0, x1, y1, z1 = model.getBoundingBox(-1, -1)
     body_size = max(x1 - x0, y1 - y0, z1 - z0)

@@ -1,4 +1,4 @@
-"""Faces that a drill left: cylinders, holes that are oblique or beside the axis, rounded mouths."""
+"""Cylinders left by a drill, holes that are oblique or off the axis, and rounded mouths."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from geometry.shape.hole import Hole
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats
 
-BLEND_TOLERANCE = 5e-3  # of its radius, by which a rounded mouth may be off; OpenCASCADE's is 8e-4
+# Largest deviation of a rounded mouth, relative to its radius; OpenCASCADE's mouths have 8e-4.
+BLEND_TOLERANCE = 5e-3
 
 
 @dataclass
 class DrilledFaces:
-    """A cylinder that a drill left, and the other faces of its hole.
+    """A cylinder left by a drill, and the other faces of its hole.
 
-    axis: of the cylinder, from its point nearest to the pin's axis.
-    low, high: its ends along the axis, from that point.
-    faces: those of revolution about its axis.
+    axis: axis of the cylinder; its point is the one nearest to the pin's axis.
+    low, high: ends of the cylinder along the axis, from that point.
+    faces: faces of revolution about the axis.
     """
 
     axis: Axis
@@ -40,12 +41,12 @@ class DrilledFaces:
 
 
 def near(size: float) -> float:
-    """Distance within which two points are one. size: of the body."""
+    """Distance within which two points coincide. size: size of the body."""
     return 10.0 * FACE_TOLERANCE * size
 
 
 def cylinder(face: SampledFace, line: Axis, size: float) -> DrilledFaces | None:
-    """The cylinder about a line that a face is part of, or None. size: of the body."""
+    """The cylinder about a line of which a face is a part, or None. size: size of the body."""
     drilled = DrilledFaces(line, 0.0, 0.0, 0.0, [face])
     s, _ = drilled.local(face.points)
     if np.ptp(s) > FACE_TOLERANCE * size:
@@ -57,9 +58,9 @@ def cylinder(face: SampledFace, line: Axis, size: float) -> DrilledFaces | None:
 
 
 def join(group: list[DrilledFaces], drilled: DrilledFaces, slack: float) -> None:
-    """Add a cylinder to a group, or to another part of the same cylinder in it.
+    """Add a cylinder to a group, or merge it with another part of the same cylinder in the group.
 
-    slack: distance within which two points are one.
+    slack: distance within which two points coincide.
     """
     for other in group:
         same = np.abs(other.axis.point - drilled.axis.point).max() < slack
@@ -72,9 +73,9 @@ def join(group: list[DrilledFaces], drilled: DrilledFaces, slack: float) -> None
 
 
 def holes_aslant(faces: Sequence[SampledFace], size: float) -> list[Hole]:
-    """The holes through the pin of cylinders that are oblique or beside the axis.
+    """The through holes whose faces are cylinders, oblique or off the pin's axis.
 
-    Raises: ValueError with the name of another face.
+    Raises: ValueError with the name of the first face that is not such a cylinder.
     """
     cylinders: list[DrilledFaces] = []
     for face in faces:
@@ -94,10 +95,10 @@ def holes_aslant(faces: Sequence[SampledFace], size: float) -> list[Hole]:
 
 
 def rounds_mouth(pin: Pin, face: SampledFace, holes: list[Hole]) -> bool:
-    """Whether a face rounds a mouth of one of the holes, which then has its radius.
+    """Whether a face rounds a mouth of one of the holes; the hole then gets the face's radius.
 
-    The centre of a ball that rolls along the mouth's edge is as far within the pin's surface
-    as it is from the wall of the hole.
+    The test: the centre of a ball that rolls along the mouth's edge is as far from the pin's
+    surface, within it, as from the wall of the hole.
     """
     for i, hole in enumerate(holes):
         a, outer = hole.diameter / 2.0, outer_radius(pin, hole.z)
@@ -122,7 +123,7 @@ def rounds_mouth(pin: Pin, face: SampledFace, holes: list[Hole]) -> bool:
 
 
 def _nearest(axis: Axis) -> Axis:
-    """An axis from its point nearest to the pin's axis, pointing to positive x, or y."""
+    """An axis with its point nearest to the pin's axis; it points to positive x, or else y."""
     d = axis.along / np.linalg.norm(axis.along)
     across = float(d[:2] @ d[:2])
     t = -float(axis.point[:2] @ d[:2]) / max(across, FACE_TOLERANCE)

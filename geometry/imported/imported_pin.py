@@ -19,13 +19,15 @@ from geometry.mesh.solid_mesh import MeshSize, SolidMesh
 from geometry.mesh.tet10 import refined
 from geometry.shape.band import Band, GeometryError
 
-MEASURING_MESH_SIZE = MeshSize(across=3.0, corner=1.0)  # the mesh on which a CAD file is measured
+MEASURING_MESH_SIZE = MeshSize(across=3.0, corner=1.0)  # mesh on which a CAD file is measured
 
 
 MIN_ARC_ANGLE = 0.035  # rad (2 deg): flatter arcs lose less than 0.02 % of their section
-MAX_LEAN_DIFFERENCE = 0.3  # how unequally the normals at an arc's ends may lean from its chord
-CHORD_NODE_TOLERANCE = 0.05  # of an arc's sag: a middle node nearer to the chord than that is on it
-MAX_STRAIGHT_SHARE = 0.5  # of the arcs; some edges lie on no arc
+# Largest difference between the inclinations of the normals at an arc's ends to its chord, relative
+# to the arc's angle.
+MAX_LEAN_DIFFERENCE = 0.3
+CHORD_NODE_TOLERANCE = 0.05  # of an arc's sag: a midside node nearer to the chord lies on the chord
+MAX_STRAIGHT_SHARE = 0.5  # of the arcs; a larger share of straight edges means straight elements
 
 
 def call_directly(work: Callable[..., Any], *arguments: object) -> Any:
@@ -37,19 +39,19 @@ def call_directly(work: Callable[..., Any], *arguments: object) -> Any:
 class SolidBody:
     """The body in a file, with its bands measured on a mesh.
 
-    call: runs `work(file, ...)`; it may use another process, since the libraries that read the file
-    crash on some damaged ones.
-    source: the reason why it is not a profile, for people.
+    call: function that runs `work(file, ...)`. It may use another process, because the libraries
+    that read the file crash on some damaged files.
+    source: reason why the body is not a profile, for people.
 
     Raises: GeometryError when the file is missing or not a solid, or a band is not on it;
-    MeshError when it cannot be meshed.
+    MeshError when the body cannot be meshed.
     """
 
     file: BodyFile
     call: Callable[..., Any] = field(default=call_directly, compare=False, repr=False)
     source: str = field(default="", compare=False)
 
-    revolved: ClassVar[bool] = False  # at least it is not known to be
+    revolved: ClassVar[bool] = False  # it is not known to be a body of revolution
     profile: ClassVar[None] = None
     cuts: ClassVar[Mapping[str, Never]] = MappingProxyType({})
 
@@ -65,7 +67,7 @@ class SolidBody:
                     "z-reversed",
                     ("band", place.name),
                 )
-        self._coarse  # noqa: B018  a file that cannot be used is reported at once
+        self._coarse  # noqa: B018  so that a file that cannot be used is reported at once
 
     @cached_property
     def _coarse(self) -> SolidMesh:
@@ -76,7 +78,8 @@ class SolidBody:
         """A mesh of this size.
 
         The elements of a mesh file are halved once for every factor of two by which `size` is finer
-        than the default. most: unknowns that are allowed of others, one number.
+        than the default.
+        most: for CAD files, optionally the largest number of unknowns that is allowed.
         """
         if not self.meshed:
             solid: SolidMesh = self.call(cad_mesh, self.file, size, *most)
@@ -100,7 +103,7 @@ class SolidBody:
 
     @property
     def meshed(self) -> bool:
-        """Whether its file is a mesh."""
+        """Whether the body's file is a mesh."""
         return self.file.meshed
 
     @cached_property
@@ -128,7 +131,8 @@ class SolidBody:
     def cut_off(self) -> float:
         """Approximate fraction of the volume that a file's mesh cuts off.
 
-        It does so where sides of its elements are straight although the surface is curved.
+        A mesh cuts off volume where its elements have straight edges although the surface is
+        curved.
         """
         return _cut_off(self._coarse.mesh) / self.volume if self.meshed else 0.0
 
@@ -144,22 +148,25 @@ class SolidBody:
         return {p.name: measure(self._coarse.mesh, p) for p in self.file.places}
 
     def band(self, name: str) -> Band:
-        """The measured band of this name. Raises: GeometryError that lists the names there are."""
+        """The measured band of this name.
+
+        Raises: GeometryError for an unknown name, with a list of all names.
+        """
         if name not in self._bands:
             raise self._unknown(name)
         return self._bands[name]
 
     def surface(self, name: str) -> str:
-        """The mesh boundary of that name: a band, a surface of the file, "start" or "end".
+        """The mesh boundary of this name: a band, a surface of the file, "start" or "end".
 
-        Raises: GeometryError that lists the names there are.
+        Raises: GeometryError for an unknown name, with a list of all names.
         """
         if name not in self._coarse.mesh.boundaries:
             raise self._unknown(name)
         return name
 
     def _unknown(self, name: str) -> GeometryError:
-        """The error of a name that is no surface."""
+        """The error for a name that is not a surface."""
         known = ", ".join(self._coarse.mesh.boundaries)
         return GeometryError(
             f"pin {self.name} has no surface {name!r}; its surfaces are {known}", "unknown-surface"
@@ -167,12 +174,12 @@ class SolidBody:
 
 
 def _cut_off(mesh: MeshTet2) -> float:
-    """Volume (m^3) between a mesh's surface and the round one it stands for, where its sides are
-    chords of that; 0 for curved sides and for bodies that are not round.
+    """Volume (m^3) between a mesh with straight edges and the round surface that it approximates.
 
-    An edge is a chord of an arc where the surface's normals at its ends lean apart alike, by the
-    arc's angle. The sags of a facet's sides, as quadratic shapes, hold a third of its area times
-    their sum.
+    It is 0 for curved edges, and for bodies that are not round. An edge is the chord of an arc if
+    the surface's normals at its ends are inclined away from each other by equal angles, together
+    the arc's angle. The sags of a facet's edges, as quadratic shapes, enclose a third of the
+    facet's area times their sum.
     """
     here, x = facets(mesh), mesh.doflocs.T
     normals = np.zeros((mesh.nvertices, 3))

@@ -20,12 +20,12 @@ from geometry.shape.band import GeometryError
 from pinbase.arrays import Ints
 
 SURFACE_CELLS = ("triangle", "triangle6")
-MAX_COORDINATE = 1000.0  # m; the limit for profiles, too
+MAX_COORDINATE = 1000.0  # m; the same limit as for profiles
 ACCEPTED_CELLS = ("vertex", "line", "line3", *SURFACE_CELLS)
 
 
 def mesh_from_file(file: BodyFile) -> SolidMesh:
-    """The mesh in a file by quadratic tetrahedra, m; linear ones are given straight sides.
+    """The mesh in a file by quadratic tetrahedra, m; linear tetrahedra become straight ones.
 
     Its boundaries are the file's named sets of triangles, or of nodes.
 
@@ -81,7 +81,7 @@ def mesh_from_file(file: BodyFile) -> SolidMesh:
 
 
 def _require_tetrahedra(kinds: set[str], where: str) -> None:
-    """Raises: GeometryError unless the elements are tetrahedra of one kind."""
+    """Raise GeometryError unless the elements are tetrahedra of one kind."""
     if not kinds & {"tetra", "tetra10"}:
         raise GeometryError(
             f"{where}: no volume: the mesh has no tetrahedra, only "
@@ -102,7 +102,7 @@ def _require_tetrahedra(kinds: set[str], where: str) -> None:
 
 
 def _read(file: BodyFile) -> meshio.Mesh:
-    """The file as meshio reads it. Raises: GeometryError where it cannot."""
+    """The file's mesh as read by meshio. Raises: GeometryError where meshio cannot read it."""
     try:
         # meshio prints warnings while it tries several formats.
         printed = io.StringIO()
@@ -141,7 +141,7 @@ def _triangles(mesh: meshio.Mesh) -> dict[str, Ints]:
 
 
 def _pieces(mesh: MeshTet2) -> int:
-    """Number of pieces of a mesh that are not joined by a facet."""
+    """Number of pieces of a mesh that share no facet."""
     first, second = mesh.f2t[:, mesh.f2t[1] >= 0]
     n = mesh.nelements
     joined = sp.coo_matrix((np.ones(len(first)), (first, second)), shape=(n, n))

@@ -1,4 +1,4 @@
-"""The mesh of a pin, however its shape is given."""
+"""The mesh of a pin, whatever the source of its shape."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def solid_mesh(
 ) -> SolidMesh:
     """The mesh of a pin.
 
-    edges: z of further circles on the surface at which it is refined, m; for a body from a file
-    these are the ends of its bands.
+    edges: z of further circles on the surface at which the mesh is refined, m; a body from a file
+    ignores them and is refined at the ends of its bands.
     element: kind of tetrahedra.
-    most: unknowns of quadratic ones that are allowed.
+    most: largest number of unknowns of quadratic tetrahedra that is allowed.
 
-    Raises: MeshError.
+    Raises: MeshError where the pin cannot be meshed.
     """
     if isinstance(pin, SolidBody):
         solid = pin.mesh(size, most)

@@ -11,14 +11,14 @@ from geometry.imported.body_file import BodyFile, Place
 from geometry.shape.band import END_FACES, Band, GeometryError
 from pinbase.arrays import Floats, Ints, Mask
 
-MIN_OUTWARD_COSINE = 0.5  # between normal and radius, of a facet of an outer surface
-MAX_FACET_DEPTH = 0.02  # of the corners of a band's facets below the local radius, over that radius
-BAND_END_SLACK = 1e-6  # of the body's length: facets this close to an end lie in it
+MIN_OUTWARD_COSINE = 0.5  # least cosine of the angle between normal and radius on outer surfaces
+MAX_FACET_DEPTH = 0.02  # of the local radius: largest depth of corners of a band's facets below it
+BAND_END_SLACK = 1e-6  # of the body's length: facets this close to an end lie in the end face
 
 
 @dataclass(frozen=True)
 class MeasuredBand(Band):
-    """A band whose area and mean radius are those of the mesh. measured: its area, m^2."""
+    """A band whose area and mean radius are measured on the mesh. measured: area, m^2."""
 
     measured: float = 0.0
 
@@ -30,11 +30,11 @@ class MeasuredBand(Band):
 
 @dataclass(frozen=True)
 class Facets:
-    """The boundary facets of a mesh, taken as plane.
+    """The boundary facets of a mesh, treated as plane.
 
-    number: (F,) in the mesh.
+    number: (F,) numbers of the facets in the mesh.
     corners: (F, 3, 3) m.
-    normals: (F, 3) outward, with the area as length, m^2.
+    normals: (F, 3) outward normals, whose length is the area, m^2.
     """
 
     number: Ints
@@ -109,8 +109,8 @@ def _band_facets(surface: Facets, named: dict[str, Ints], place: Place, file: Bo
 def outermost(surface: Facets, z0: float, z1: float) -> Mask:
     """Mask (F,) of the facets of the outermost surface between z0 and z1 (m).
 
-    Their middle lies between these, they face away from the z-axis, and at their z no other such
-    facet lies further from it.
+    The middle of such a facet lies between z0 and z1, the facet faces away from the z-axis, and at
+    its z no other such facet is farther from the axis.
     """
     middle = surface.corners.mean(axis=1)
     r = np.hypot(middle[:, 0], middle[:, 1])
@@ -118,7 +118,7 @@ def outermost(surface: Facets, z0: float, z1: float) -> Mask:
     facing = outward > MIN_OUTWARD_COSINE * r * surface.areas
     on = (middle[:, 2] > z0) & (middle[:, 2] < z1) & facing
     candidates = np.flatnonzero(on)
-    # Compare each candidate with the largest radius of those in its range of z.
+    # Compare each candidate with the largest radius of the candidates in its range of z.
     candidates = candidates[np.argsort(middle[candidates, 2])]
     height, radius = middle[candidates, 2], np.hypot(*np.moveaxis(surface.corners, -1, 0)[:2])
     largest = radius[candidates].max(axis=1, initial=0.0)

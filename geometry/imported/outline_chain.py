@@ -1,4 +1,4 @@
-"""The outlines of a section by corners and radii, from its sides as recognised face by face."""
+"""The outlines of a section by corners and radii, from the sides recognised face by face."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ QUARTER_TURN = math.pi / 2.0 * (1.0 + 1e-9)
 class MeridianSide:
     """A straight or circular part of the outline.
 
-    start, end: (r, z).
-    centre: of a circular part; None for a straight one.
+    start, end: positions (r, z).
+    centre: centre of a circular part; None for a straight part.
     turn: angle by which a circular part turns to the left from start to end, rad.
-    name: of its face.
+    name: name of the face.
     """
 
     start: RZ
@@ -38,7 +38,7 @@ class MeridianSide:
         """The side of a face of revolution about the z-axis; None if not straight or circular.
 
         to_axis: whether a plane face reaches the axis.
-        size: of the body.
+        size: size of the body.
         """
         r, z = np.hypot(face.points[:, 0], face.points[:, 1]), face.points[:, 2]
         out = np.sum(face.points[:, :2] * face.normals[:, :2], axis=1)
@@ -52,12 +52,12 @@ class MeridianSide:
 
     @property
     def cylinder(self) -> bool:
-        """Whether it is parallel to the axis."""
+        """Whether the side is parallel to the axis."""
         (r0, z0), (r1, z1) = self.start, self.end
         return self.centre is None and abs(r1 - r0) <= FACE_TOLERANCE * abs(z1 - z0)
 
     def passes(self, at: RZ, near: float) -> bool:
-        """Whether it is across the axis and passes a point, at a distance from its ends."""
+        """Whether the side is perpendicular to the axis and passes through a point off its ends."""
         (r0, z0), (r1, z1) = sorted((self.start, self.end))
         level = self.centre is None and max(abs(z0 - z1), abs(z0 - at[1])) <= near
         return level and r0 + near < at[0] < r1 - near
@@ -84,7 +84,7 @@ class MeridianSide:
             yield replace(self, start=a, end=b, turn=self.turn / count)
 
     def tangent(self) -> RZ:
-        """Unit tangent at its start."""
+        """Unit tangent at the start of the side."""
         if self.centre is None:
             length = math.dist(self.start, self.end)
             return (self.end[0] - self.start[0]) / length, (self.end[1] - self.start[1]) / length
@@ -96,7 +96,10 @@ class MeridianSide:
 def _straight(
     face: SampledFace, rz: Floats, rim: Floats, normal: Floats, to_axis: bool
 ) -> MeridianSide:
-    """A straight side through points rz and rim (P, 2) with a normal (2,)."""
+    """A straight side through points rz and rim (P, 2) with a normal (2,).
+
+    to_axis: whether a plane face reaches the axis.
+    """
     points = rim if face.plane else np.vstack([rz, rim])
     along = np.array([-normal[1], normal[0]])
     at = points @ along
@@ -112,7 +115,8 @@ def _circular(
 ) -> MeridianSide | None:
     """A circular side through points, or None, by least squares p = c + rho n.
 
-    points: (P, 2) that it covers. rz, normals: (Q, 2) those from which it is fitted.
+    points: (P, 2) points that the side covers.
+    rz, normals: (Q, 2) points and normals to which the circle is fitted.
     """
     count = len(rz)
     rows = np.zeros((2 * count, 3))
@@ -145,7 +149,7 @@ def _rotated(centre: RZ, at: RZ, angle: float) -> RZ:
 def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], list[Bend]]:
     """Corners of the outer surface and of the bore (empty for a solid body), in order of z.
 
-    near: distance within which two points are one.
+    near: distance within which two points coincide.
 
     Raises: ValueError where the sides do not form one outline.
     """
@@ -160,7 +164,8 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
         chain = [side.reversed() for side in reversed(chain)]
         count = len(places) - 1
         i, j = count - i, count - j
-    # A closed chain has a bore through the pin, on the smaller of the two routes between them.
+    # In a closed chain the pin has a through bore, which is the route between the two points that
+    # encloses the smaller area.
     if chain[0].start == chain[-1].end:
         routes = [chain[i:j], _reversed([*chain[j:], *chain[:i]])]
         core, shaft = sorted(routes, key=_area_below)
@@ -170,10 +175,10 @@ def outlines(sides: Sequence[MeridianSide], near: float) -> tuple[list[Bend], li
 
 
 def _without_overhang(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
-    """The sides, of which plane faces end where others do.
+    """The sides, with plane faces trimmed to the ends of other sides.
 
-    A flat of a thinner part lets the face of the shoulder beside it reach further in, and a keyway
-    in a bore lets one reach further out.
+    Next to a flat on a thinner part, the face of the shoulder extends farther in; next to a keyway
+    in a bore, a face extends farther out.
     """
 
     def shared(at: RZ, among: Iterable[RZ]) -> bool:
@@ -204,7 +209,7 @@ def _area_below(sides: Sequence[MeridianSide]) -> float:
 
 
 def _connected(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]:
-    """The sides, each once, with exactly equal ends where they meet, and without dead ends."""
+    """The sides without duplicates and dead ends, with exactly equal ends where they meet."""
     places: list[RZ] = []
 
     def place(at: RZ) -> RZ:
@@ -223,6 +228,7 @@ def _connected(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]
         joined = replace(side, start=start, end=end)
         if not any(_same(joined, other, near) for other in unique):
             unique.append(joined)
+    # Drop sides with an end at which no other side begins (unless on the axis), until none is left.
     while True:
         ends = [p for s in unique for p in (s.start, s.end)]
         leading = [
@@ -234,7 +240,7 @@ def _connected(sides: Sequence[MeridianSide], near: float) -> list[MeridianSide]
 
 
 def _same(a: MeridianSide, b: MeridianSide, near: float) -> bool:
-    """Whether two sides with the same ends are one, in either direction."""
+    """Whether two sides are the same, in either direction."""
     if {a.start, a.end} != {b.start, b.end}:
         return False
     if a.centre is None or b.centre is None:
@@ -255,24 +261,24 @@ def _chain(sides: list[MeridianSide]) -> list[MeridianSide]:
     starts = [s for s in sides if s.start[0] == 0.0 or s.end[0] == 0.0]
     first = starts[0] if starts else sides[0]
     chain = [first if not starts or first.start[0] == 0.0 else first.reversed()]
-    left = [s for s in sides if s is not first]
-    while left and chain[-1].end[0] != 0.0:
+    remaining = [s for s in sides if s is not first]
+    while remaining and chain[-1].end[0] != 0.0:
         at = chain[-1].end
-        following = [s for s in left if at in (s.start, s.end)]
+        following = [s for s in remaining if at in (s.start, s.end)]
         if len(following) > 1:
             raise ValueError("more than two of its faces of revolution meet in a circle")
         if not following:
             break
-        left.remove(following[0])
+        remaining.remove(following[0])
         chain.append(following[0] if following[0].start == at else following[0].reversed())
     closed = chain[0].start == chain[-1].end
-    if left or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
+    if remaining or not (closed or chain[0].start[0] == chain[-1].end[0] == 0.0):
         raise ValueError("its faces of revolution do not form one closed outline")
     return chain
 
 
 def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
-    """The corners of a chain; a circular side is a rounded corner between its end tangents."""
+    """The corners of a chain; a circular side becomes a rounded corner between its end tangents."""
     if not sides:
         return []
     out = [Bend(sides[0].start[1], sides[0].start[0])]
@@ -287,7 +293,7 @@ def _bends(sides: Sequence[MeridianSide], near: float) -> list[Bend]:
 
 
 def _without_straight(bends: list[Bend], near: float) -> list[Bend]:
-    """The corners without those at which the outline goes straight on."""
+    """The corners without those at which the outline continues straight."""
     out = bends[:1]
     for bend, after in pairwise(bends[1:]):
         before = out[-1]
@@ -311,7 +317,7 @@ def _without_faces(bends: list[Bend], near: float) -> list[Bend]:
 def _without_end_faces(
     sides: Sequence[MeridianSide], low: float, high: float, near: float
 ) -> list[MeridianSide]:
-    """The sides without the end faces, which are at z = low and high."""
+    """The sides without the end faces, at z = low and z = high."""
 
     def is_end_face(side: MeridianSide) -> bool:
         z0, z1 = side.start[1], side.end[1]

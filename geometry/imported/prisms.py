@@ -1,7 +1,7 @@
 """Recognition of prisms about the axis, such as the head of a bolt or a square end.
 
-Planes along the axis that close a polygon are flats of a cylinder through its corners, of which
-they leave nothing: the outline needs that cylinder, though the body has no such face.
+Planes along the axis that form a closed polygon are flats on a cylinder through its corners. They
+leave nothing of this cylinder, but the outline needs it, although the body has no such face.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ Z_AXIS = np.array([0.0, 0.0, 1.0])
 class PrismFace:
     """A plane along the axis, in a frame whose z-axis is the pin's.
 
-    low, high: the edges (2, 3) at which it ends around the axis, clockwise and counterclockwise
-    seen from the end: the points on each with least and largest z.
+    low, high: the two edges along the axis, (2, 3) each, clockwise and counterclockwise seen from
+    the end; each has the points with least and greatest z.
     """
 
     face: SampledFace
@@ -32,7 +32,10 @@ class PrismFace:
 
     @staticmethod
     def of(face: SampledFace, near: float) -> PrismFace | None:
-        """The plane of a face; None if it is no plane along the axis, or passes through it."""
+        """The plane of a face; None if the face is not a plane along the axis, or contains it.
+
+        near: distance within which two points coincide.
+        """
         normal = face.normals[0]
         distance = float(face.points[0] @ normal)
         if not face.plane or abs(normal[2]) > FACE_TOLERANCE or abs(distance) < near:
@@ -46,10 +49,13 @@ class PrismFace:
 def prisms(faces: Sequence[SampledFace], near: float) -> list[list[PrismFace]]:
     """The faces of each prism whose edges lie on one cylinder about the axis.
 
-    faces: in a frame whose z-axis is the pin's. near: distance within which two points are one.
+    faces: faces in a frame whose z-axis is the pin's.
+    near: distance within which two points coincide.
     """
     planes = [plane for face in faces if (plane := PrismFace.of(face, near)) is not None]
     out = []
+    # Follow planes from edge to edge around the axis. A closed chain with all edges on one cylinder
+    # is a prism.
     while planes:
         chain = [planes.pop()]
         while following := [p for p in planes if np.abs(p.low - chain[-1].high).max() < near]:

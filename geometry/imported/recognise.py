@@ -1,10 +1,10 @@
 """Recognition of a CAD body as a turned profile with drilled and milled cuts.
 
 Faces of revolution about one axis give straight and circular parts of the section's outline, which
-is a chain of them from end to end; a prism gives the cylinder through its edges. All other faces
-must be those of cuts. If the volume of the result agrees with that of the body, nothing was
-overlooked. Otherwise each solid that the body lacks of its profile is taken for itself: as known
-cuts, or as a recess.
+form a chain from end to end; a prism gives the cylinder through its edges. All other faces must
+belong to cuts. If the volume of the result agrees with that of the body, nothing was overlooked.
+Otherwise each solid that the body lacks of its profile is recognised on its own, as known cuts or
+as a recess.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
 VOLUME_TOLERANCE = 1e-5  # relative difference of the volumes
-MAX_FACES = 400  # of a body: one with more is not recognised
-MAX_FLATS = 12  # of a body; walls of splines that are not parallel look like more
+MAX_FACES = 400  # a body with more faces is not recognised
+MAX_FLATS = 12  # largest number on a body; walls of splines that are not parallel look like more
 DIMENSION_DIGITS = 7  # decimals, relative to the body's size, to which dimensions are rounded
 
 
@@ -58,11 +58,11 @@ class RecognisedProfile:
     """A body that was recognised, m.
 
     outside, bore: corners of the outline and of the bore.
-    cuts: in the axes of the profile.
-    start: position of its start face along the axis, from the point of the axis nearest to the
+    cuts: cuts in the axes of the profile.
+    start: position of the start face along the axis, from the point of the axis nearest to the
     file's origin, in the file's unit.
-    along, x: directions of the axis, and of angle zero, in the file.
-    surfaces: two z of each cylinder with a name, from the start face, m.
+    along, x: directions, in the file's axes, of the pin's axis and of angle zero.
+    surfaces: two z of each named cylinder, from the start face, m.
     """
 
     outside: tuple[Bend, ...]
@@ -75,7 +75,7 @@ class RecognisedProfile:
 
     @property
     def upright(self) -> bool:
-        """Whether its axis is along the file's z-axis."""
+        """Whether the pin's axis is along the file's z-axis."""
         return self.along == (0.0, 0.0, 1.0)
 
     def scaled(self, factor: float) -> RecognisedProfile:
@@ -89,14 +89,15 @@ class RecognisedProfile:
         return replace(self, outside=outside, bore=bore, cuts=cuts, surfaces=surfaces)
 
     def pin(self, name: str) -> Pin:
-        """Its profile, without cuts. Raises: GeometryError."""
+        """The profile, without cuts. Raises: GeometryError where it is impossible."""
         return pin_of_polyline(name, self.outside, self.bore)
 
 
 def recognised_profile(file: BodyFile) -> RecognisedProfile:
-    """The profile and cuts of the body in a file, about whatever axis it has.
+    """The profile and cuts of the body in a file, about any axis.
 
-    Raises: NotTurnedError; GeometryError, MeshError as cad_mesh.
+    Raises: NotTurnedError where the body is not recognised; GeometryError and MeshError as for
+    `cad_mesh`.
     """
     with gmsh_model(f"{file.name}, {file.path.name}") as gmsh:
         solids = solids_of(gmsh, file)
@@ -124,12 +125,12 @@ def recognised_profile(file: BodyFile) -> RecognisedProfile:
 
 
 def _not_turned(file: BodyFile, why: str) -> NotTurnedError:
-    """The error of a file whose body is not a turned part, with the reason."""
+    """The error for a file whose body is not a turned part. why: the reason."""
     return NotTurnedError(file.name, file.path.name, why)
 
 
 def _axis(file: BodyFile, faces: Sequence[SampledFace], centre: Floats, size: float) -> Axis:
-    """The axis about which most of the surface is of revolution."""
+    """The axis about which the largest area is a surface of revolution."""
     z_axis = Axis(np.zeros(3), np.array([0.0, 0.0, 1.0]))
     candidates = [z_axis, *(a for face in faces if (a := face.axis(centre, size)) is not None)]
 
@@ -137,7 +138,7 @@ def _axis(file: BodyFile, faces: Sequence[SampledFace], centre: Floats, size: fl
         revolved = (f for f in faces if not f.plane and f.revolved(axis, size))
         return sum(f.area for f in revolved)
 
-    # The file's z-axis is preferred to an equal axis of a face.
+    # The file's z-axis is preferred to a face's axis with an equal area.
     areas = [revolved_area(axis) for axis in candidates]
     preference = [1.0 + FACE_TOLERANCE, *[1.0] * (len(candidates) - 1)]
     best = int(np.argmax(np.array(areas) * preference))
@@ -165,10 +166,12 @@ def _reaches_axis(gmsh: Any, faces: Sequence[SampledFace], axis: Axis) -> set[in
 def _shaft(
     file: BodyFile, faces: Sequence[SampledFace], axis: Axis, inside: set[int], size: float
 ) -> tuple[RecognisedProfile, list[SampledFace]]:
-    """The profile, without cuts, of a body, in the file's unit, and the faces that are not of
-    revolution, in its axes. inside: tags of faces that reach the axis.
+    """The profile of a body without cuts, in the file's unit, and the faces not of revolution.
 
-    Raises: NotTurnedError.
+    These faces are in the axes of the profile.
+    inside: tags of plane faces that reach the axis. size: size of the body.
+
+    Raises: NotTurnedError where the faces of revolution form no profile.
     """
     frame = axis.frame()
     local = [_in_frame(face, axis.point, frame) for face in faces]
@@ -205,7 +208,7 @@ def _shaft(
 
 
 def _digits(size: float) -> int:
-    """The decimals to which dimensions are rounded. size: of the body."""
+    """The number of decimals to which dimensions are rounded. size: size of the body."""
     return DIMENSION_DIGITS - math.floor(math.log10(size))
 
 
@@ -220,13 +223,13 @@ def _in_frame(face: SampledFace, origin: Floats, frame: Floats) -> SampledFace:
 
 
 def _plain(vector: Floats) -> tuple[float, float, float]:
-    """A vector as numbers, without round-off."""
+    """A vector as numbers, rounded to 12 decimals."""
     x, y, z = (round(float(v), 12) + 0.0 for v in vector)
     return x, y, z
 
 
 def _rounded(bend: Bend, start: float, digits: int) -> Bend:
-    """A corner with z from the start face, rounded to so many digits."""
+    """A corner with z from the start face, rounded to `digits` decimals."""
     z, r, radius = (round(x, digits) for x in (bend.z - start, bend.r, bend.radius))
     return Bend(z, r, radius)
 
@@ -234,9 +237,9 @@ def _rounded(bend: Bend, start: float, digits: int) -> Bend:
 def _cuts(
     file: BodyFile, rest: Sequence[SampledFace], shaft: RecognisedProfile, size: float
 ) -> tuple[Cut, ...]:
-    """The cuts of the faces that are not of revolution, in the file's unit.
+    """The cuts to which the faces not of revolution belong, in the file's unit.
 
-    Raises: NotTurnedError.
+    Raises: NotTurnedError where a face belongs to no known cut.
     """
     try:
         cuts = CutFaces(rest, size).cuts(shaft.pin(file.name))
@@ -253,11 +256,11 @@ def _cuts(
 def _with_recesses(
     file: BodyFile, shaft: RecognisedProfile, axis: Axis, size: float, error: NotTurnedError
 ) -> tuple[Cut, ...]:
-    """The cuts and recesses of a body, in the file's unit, each removed solid for itself.
+    """The cuts and recesses of a body, in the file's unit, from each removed solid on its own.
 
-    error: why its faces are not those of known cuts.
+    error: the reason why its faces are not those of known cuts.
 
-    Raises: NotTurnedError.
+    Raises: NotTurnedError where this fails, too.
     """
     try:
         pin = shaft.pin(file.name)
@@ -284,7 +287,7 @@ def _with_recesses(
 def _surfaces(
     sides: Sequence[MeridianSide], start: float, size: float
 ) -> dict[str, tuple[float, float]]:
-    """Two z of each cylinder whose whole surface has one name, by name, from the start face."""
+    """Two z, from the start face, of each cylinder whose faces all have one name, by this name."""
     names: dict[tuple[int, ...], set[str]] = {}
     ends: dict[tuple[int, ...], tuple[float, float]] = {}
     for side in (side for side in sides if side.cylinder):
@@ -292,11 +295,11 @@ def _surfaces(
         key = tuple(round(x / (10.0 * FACE_TOLERANCE * size)) for x in (side.start[0], z0, z1))
         names.setdefault(key, set()).add(side.name)
         ends[key] = z0 - start, z1 - start
-    return {name: ends[key] for key, (name, *more) in names.items() if not more}
+    return {name: ends[key] for key, (name, *others) in names.items() if not others}
 
 
 def _require_volume(file: BodyFile, profile: RecognisedProfile, volume: float) -> None:
-    """Raises: NotTurnedError unless the recognised body has the volume (m^3) of the file's."""
+    """Raise NotTurnedError unless the recognised body has the volume (m^3) of the file's body."""
     try:
         pin = profile.pin(file.name)
         recognised = pin.volume

@@ -1,9 +1,9 @@
 """Recognition of cuts from the faces of a CAD body that are not of revolution about its axis.
 
-Cylinders across the axis are holes, or ends of slots where planes continue beside them; cylinders
-along it are passages. Cones, tori and planes belong to the cylinder about whose axis they are of
-revolution. All other planes are flats. Of the faces that remain, some round the mouths of holes,
-and cylinders are holes that are oblique or beside the axis.
+Cylinders across the axis are holes, or ends of slots where planes continue beside them. Cylinders
+along the axis are passages. Cones, tori and planes belong to the cylinder about whose axis they are
+surfaces of revolution. All other planes are flats. The remaining faces round the mouths of holes,
+or are cylinders of holes that are oblique or off the axis.
 """
 
 from __future__ import annotations
@@ -37,20 +37,24 @@ from geometry.shape.pin import Pin
 class CutFaces:
     """The faces of cuts, in a frame whose z-axis is the pin's. Lengths are in the file's unit.
 
-    size: of the body.
+    size: size of the body.
     """
 
     faces: Sequence[SampledFace]
     size: float
 
     def cuts(self, pin: Pin) -> tuple[Cut, ...]:
-        """The cuts in a profile. Raises: ValueError with the name of a face of no known cut."""
+        """The cuts in a profile.
+
+        Raises: ValueError with the name of a face that belongs to no known cut.
+        """
         of_prisms = [p.face for prism in prisms(self.faces, self.near) for p in prism]
         sides, _ = self._flats(of_prisms, ())
         taken = {f.tag for f in of_prisms}
         planes = [f for f in self.faces if f.plane and f.tag not in taken]
-        # Cylinders first; then slots, which use some of them; then each remaining face belongs to a
-        # cylinder, and what still remains must be flats with their fillets.
+        # First cylinders; then slots, which use some of the cylinders. Each remaining face may
+        # belong to a cylinder. All others must be flats with their fillets, rounded mouths, or
+        # holes that are oblique or off the axis.
         across, along, bent = self._cylinders([f for f in self.faces if not f.plane])
         slots, used = self._slots(pin, planes, across)
         planes = [f for f in planes if f.tag not in used]
@@ -64,19 +68,21 @@ class CutFaces:
         flats, rounded = self._flats([f for f in planes if f.tag not in used], bent)
         used |= rounded
         holes = [self._hole(pin, c) for c in across]
-        left = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
+        remaining = [f for f in bent if f.tag not in used and not rounds_mouth(pin, f, holes)]
         passages = [self._passage(pin, c) for c in along]
-        return _once([*holes, *holes_aslant(left, self.size), *sides, *flats, *slots, *passages])
+        return _once(
+            [*holes, *holes_aslant(remaining, self.size), *sides, *flats, *slots, *passages]
+        )
 
     @property
     def near(self) -> float:
-        """Distance within which two points are one."""
+        """Distance within which two points coincide."""
         return near(self.size)
 
     def _cylinders(
         self, faces: Sequence[SampledFace]
     ) -> tuple[list[DrilledFaces], list[DrilledFaces], list[SampledFace]]:
-        """Cylinders across the pin's axis and through it, those along it, and all other faces."""
+        """Cylinders whose axes cross the pin's at a right angle, those along it, other faces."""
         across: list[DrilledFaces] = []
         along: list[DrilledFaces] = []
         bent = []
@@ -94,9 +100,9 @@ class CutFaces:
         return across, along, bent
 
     def _placed(self, axis: Axis) -> Axis | None:
-        """An axis from its point nearest to the pin's axis; None unless along or across that.
+        """An axis with its point nearest to the pin's axis; None unless along or across that axis.
 
-        An axis across the pin's must pass through it; it points to positive x, or y.
+        An axis across must intersect the pin's axis. It points to positive x, or to positive y.
         """
         along = axis.along / np.linalg.norm(axis.along)
         if abs(abs(along[2]) - 1.0) < FACE_TOLERANCE:
@@ -131,7 +137,8 @@ class CutFaces:
     ) -> tuple[list[Slot], set[int]]:
         """Slots, between parallel planes on both sides of the axis, and the tags of their faces."""
         out, used = [], set[int]()
-        # The narrowest first: floors of slots opposite each other face each other, too.
+        # The narrowest slot comes first, because the floors of two opposite slots are also such a
+        # pair of planes.
         for h, one, other in sorted(self._facing(planes), key=lambda pair: pair[0]):
             if not {one.tag, other.tag} & used:
                 slot = self._slot(pin, (one, other), h, planes, across)
@@ -143,8 +150,10 @@ class CutFaces:
     def _facing(
         self, planes: Sequence[SampledFace]
     ) -> Iterator[tuple[float, SampledFace, SampledFace]]:
-        """Pairs of planes at one distance on both sides of the axis, after that distance, that are
-        not on opposite sides along themselves, as walls of two slots are.
+        """Pairs of parallel planes at the same distance on both sides of the axis.
+
+        Returns the distance and the two planes. Pairs that lie on opposite sides of the axis in the
+        direction along the planes are left out, because they are walls of two different slots.
         """
         for one, other in combinations(planes, 2):
             m = one.normals[0]
@@ -165,15 +174,15 @@ class CutFaces:
         planes: Sequence[SampledFace],
         across: Sequence[DrilledFaces],
     ) -> tuple[Slot, set[int]] | None:
-        """The slot between two walls, with the tags of its faces; None without ends or a floor.
+        """The slot between two walls, with the tags of its faces; None without round ends or floor.
 
-        h: half of its width.
+        h: half of the slot's width.
         """
         k = np.cross(walls[0].normals[0], Z_AXIS)
         rim = np.concatenate([wall.rim for wall in walls])
         k = k * math.copysign(1.0, float((rim @ k).mean()))
         z0, z1 = float(rim[:, 2].min()), float(rim[:, 2].max())
-        # Round ends are half cylinders of the slot's width at the ends of its walls; its floor is a
+        # Round ends are half cylinders of the slot's width at the ends of its walls. The floor is a
         # plane between the walls.
         ends = [
             c
@@ -253,14 +262,14 @@ class CutFaces:
         out = []
         for face in c.faces:
             s, _ = c.local(face.points)
-            # Points of a plane may lie beyond its rim, where that is no whole circle.
+            # Sample points of a plane may lie beyond its rim, where the rim is not a full circle.
             most = float(c.local(face.rim)[0].max() if face.plane else s.max())
             if np.ptp(s) >= self.near and most <= c.radius + self.near:
                 out.append(face)
         return out
 
     def _bottom(self, c: DrilledFaces, end: float, outward: float) -> tuple[float, Bottom]:
-        """The position at which the full diameter ends, without rounding, and the bottom.
+        """The position at which the full diameter would end without rounding, and the bottom.
 
         end: end of the wall along the axis. outward: direction out of the hole, 1 or -1.
         """
@@ -299,7 +308,7 @@ class CutFaces:
             return Hole(z, 2.0 * c.radius, angle, chamfer=chamfer)
         outward = 1.0 if c.high > -c.low else -1.0
         end = c.low if outward > 0.0 else c.high
-        # In a bore
+        # A hole without a bottom ends in the bore; its depth may end anywhere within the bore.
         floor, bottom = self._bottom(c, end, outward) if blind else (end / 2.0, Bottom())
         angle = angle if outward > 0.0 else angle + math.pi
         angle = math.atan2(math.sin(angle), math.cos(angle))
@@ -320,7 +329,7 @@ class CutFaces:
 
 
 def _once(cuts: Sequence[Cut]) -> tuple[Cut, ...]:
-    """The cuts, each once."""
+    """The cuts without duplicates."""
     out: list[Cut] = []
     for cut in cuts:
         if not any(cut.like(other, 1e-6 * max(1e-300, abs(cut.extent[1]))) for other in out):

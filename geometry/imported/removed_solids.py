@@ -1,4 +1,4 @@
-"""The solids by which a body is less than the profile of its faces of revolution."""
+"""The solids that a body lacks of the profile of its faces of revolution."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ from geometry.shape.profile import meridian, off_edge
 from geometry.shape.recess import Line, Recess, RemovedFace, RemovedSolid, is_on_outside, of_solid
 from pinbase.arrays import Floats
 
-ON_PROFILE = 1e-5  # of the pin's size: points this close to its outline are on it
+ON_PROFILE = 1e-5  # of the pin's size: points this close to the outline are on the outline
 FACE_FRACTIONS = np.linspace(0.0, 1.0, 17)
 EDGE_FRACTIONS = np.linspace(0.0, 1.0, 49)
-MAX_SOLIDS = 40  # each takes up to half a second of those in which a file must be read
-LEAST_VOLUME = 1e-8  # of the pin's: smaller solids are left by round-off
-KNOWN_VOLUME = 1e-4  # of a removed solid: cuts that remove as much are it
-PROBE = 0.05  # of a radius of curvature, at which it is seen on which side its centre is
-FLAT_CURVATURE = 1e-4  # times the pin's size, of a plane
+MAX_SOLIDS = 40  # each takes up to half a second of the time allowed for reading a file
+LEAST_VOLUME = 1e-8  # of the pin's volume: smaller solids come from round-off
+KNOWN_VOLUME = 1e-4  # of a removed solid's volume: cuts whose volume differs by less replace it
+PROBE = 0.05  # step, over the radius of curvature, that shows on which side the centre is
+FLAT_CURVATURE = 1e-4  # curvature times the pin's size, up to which a direction is flat
 
 
 @dataclass(frozen=True)
 class Removed:
     """A removed solid. Lengths are in the file's unit.
 
-    faces: those of its faces that are within the profile.
+    faces: faces of the solid that are within the profile.
     """
 
     recess: Recess
@@ -48,12 +48,15 @@ class Removed:
     volume: float
 
     def cuts(self, pin: Pin, size: float) -> tuple[Cut, ...]:
-        """The known cuts that remove it from a profile, else the recess. size: of the body."""
+        """The known cuts that remove the solid from a profile, otherwise the recess.
+
+        size: size of the body.
+        """
         try:
             cuts = CutFaces(self.faces, size).cuts(pin)
             with gmsh_model(pin.name) as gmsh:
-                left = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
-                removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, left, pin))
+                solid = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
+                removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, solid, pin))
         except (ValueError, MeshError):  # GeometryError is a ValueError
             return (self.recess,)
         known = abs(removed - self.volume) < KNOWN_VOLUME * self.volume
@@ -61,7 +64,7 @@ class Removed:
 
 
 def removed_solids(gmsh: Any, body: Entity, pin: Pin) -> list[Removed]:
-    """The solids that a profile has more than a body in gmsh's model, whose axes it has.
+    """The solids that a body in gmsh's model lacks of a profile in the same axes.
 
     Raises: GeometryError where the body is not within the profile, or lacks too many solids of it.
     """
@@ -79,13 +82,13 @@ def removed_solids(gmsh: Any, body: Entity, pin: Pin) -> list[Removed]:
 
 
 def _lacking(gmsh: Any, body: Entity, pin: Pin) -> list[Entity]:
-    """The part of a profile that a body in gmsh's model, which is lost, lacks."""
+    """The solids that a body in gmsh's model lacks of a profile; the body is removed."""
     occ = gmsh.model.occ
     gmsh.model.mesh.clear()
     gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
-    left, _ = occ.cut([revolve(gmsh, meridian(pin))], [body])
+    lacking, _ = occ.cut([revolve(gmsh, meridian(pin))], [body])
     occ.synchronize()
-    return [(d, t) for d, t in left if occ.getMass(d, t) > LEAST_VOLUME * pin.volume]
+    return [(d, t) for d, t in lacking if occ.getMass(d, t) > LEAST_VOLUME * pin.volume]
 
 
 def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:
@@ -117,14 +120,17 @@ def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:
 
 
 def _texts(gmsh: Any, solids: Sequence[Entity]) -> list[str]:
-    """The solids of gmsh's model, each in OpenCASCADE's BREP format. It leaves another model."""
+    """The solids of gmsh's model, each in OpenCASCADE's BREP format.
+
+    Afterwards another model is current in gmsh.
+    """
     middles = [gmsh.model.occ.getCenterOfMass(*solid) for solid in solids]
     out = []
     with tempfile.TemporaryDirectory() as folder:
         every, path = Path(folder) / "all.brep", Path(folder) / "solid.brep"
         gmsh.write(str(every))
         for middle in middles:
-            gmsh.model.add("solid")  # gmsh writes whole models
+            gmsh.model.add("solid")  # one model for each solid, because gmsh writes whole models
             occ = gmsh.model.occ
             with silence():
                 read = occ.importShapes(str(every))
@@ -157,7 +163,7 @@ def _along(gmsh: Any, curve: int) -> Floats:
 
 
 def _face(part: str, radius: float, x: Floats) -> RemovedFace:
-    """A face by points (P, 3) on it."""
+    """A face from points x (P, 3) on it."""
     distance = np.asarray(KDTree(x).query(x, min(5, len(x)))[0])
     points = tuple((a, b, c) for a, b, c in x.tolist())
     return RemovedFace(part, radius, points, float(distance[:, -1].max()))
@@ -166,7 +172,8 @@ def _face(part: str, radius: float, x: Floats) -> RemovedFace:
 def _rounding(gmsh: Any, solid: Entity, face: int, x: Floats, pin: Pin) -> float:
     """The least radius of an inner corner of the pin that a face rounds; 0 where it rounds none.
 
-    x: points on it. Its centres of curvature are then on the side of the removed solid.
+    A face rounds an inner corner if its centre of curvature is on the side of the removed solid.
+    x: (P, 3) points on the face.
     """
     model, size = gmsh.model, pin.largest_diameter
     at = model.getParametrization(2, face, x.ravel())
@@ -178,8 +185,9 @@ def _rounding(gmsh: Any, solid: Entity, face: int, x: Floats, pin: Pin) -> float
             curvature = abs(float(k[row, column]))
             if not FLAT_CURVATURE < curvature * size < math.inf:
                 continue
-            # A step along a curved direction leaves the surface, away from its centre. (Curvatures
-            # at poles of splines are wrong.)
+            # A step along a curved direction leaves the surface on the side away from the centre of
+            # curvature. The distance must agree with the curvature, which is wrong at poles of
+            # splines.
             step = PROBE / curvature
             beside = x[row] + step * np.reshape(directions, (-1, 3))[row]
             back = np.reshape(model.getClosestPoint(2, face, beside)[0], 3) - beside
@@ -192,7 +200,7 @@ def _rounding(gmsh: Any, solid: Entity, face: int, x: Floats, pin: Pin) -> float
 
 
 def _width(solid: RemovedSolid) -> float:
-    """The size of a removed solid across: of its three extents the second, or twice the least."""
+    """The width of a removed solid: the second of its three extents, or twice the least if less."""
     x = np.array([p for line in (*solid.mouth, *solid.inner) for p in line])
     x = np.concatenate([x, *(np.array(face.points) for face in solid.faces)])
     x = x - x.mean(axis=0)

@@ -1,11 +1,11 @@
 """Faces of a CAD body, described by points and normals on them.
 
-In this way it does not matter how a program writes a face: a cylinder may come whole, in halves, or
-as a spline.
+So the representation of a face in the file does not matter: a cylinder may be whole, in halves, or
+a spline.
 
-A surface is one of revolution about an axis if all its normals meet that axis. A rigid motion with
-velocities v = a + w x p maps the surface to itself if n . v = 0 at all its points p: such motions
-are the null space of the rows (n, p x n).
+A surface is a surface of revolution about an axis if all its normals meet that axis. A rigid motion
+with velocities v = a + w x p maps the surface to itself if n . v = 0 at all its points p. Such
+motions are the null space of the rows (n, p x n).
 
 Source: H. Pottmann & J. Wallner, Computational Line Geometry, Springer 2001, ch. 3.
 """
@@ -19,14 +19,14 @@ import numpy as np
 
 from pinbase.arrays import Floats
 
-FACE_TOLERANCE = 1e-6  # difference of equal points, over the body's size, and of equal directions
+FACE_TOLERANCE = 1e-6  # for equal points, over the body's size, and for equal directions
 FACE_GRID_FRACTIONS = np.linspace(0.0, 1.0, 7)
 EDGE_FRACTIONS = np.linspace(0.0, 1.0, 9)
 
 
 @dataclass(frozen=True)
 class Axis:
-    """A line through a point (3,), along a unit vector (3,)."""
+    """A line through a point (3,) along a unit vector (3,)."""
 
     point: Floats
     along: Floats
@@ -48,9 +48,9 @@ class Axis:
 class SampledFace:
     """A face of a CAD body, sampled. Lengths are in the file's unit.
 
-    tag, name: gmsh's tag, and its name in the file.
-    points, normals: (P, 3) on it.
-    rim: (R, 3) points on its edges.
+    tag, name: gmsh's tag of the face, and its name in the file.
+    points, normals: (P, 3) points on the face, and unit normals there.
+    rim: (R, 3) points on the edges of the face.
     """
 
     tag: int
@@ -62,11 +62,11 @@ class SampledFace:
 
     @property
     def plane(self) -> bool:
-        """Whether it is flat."""
+        """Whether the face is plane."""
         return bool(np.ptp(self.normals, axis=0).max() < FACE_TOLERANCE)
 
     def motions(self, centre: Floats, size: float) -> Floats:
-        """A basis (K, 6) of the motions (a, w) that map it to itself.
+        """A basis (K, 6) of the motions (a, w) that map the face to itself.
 
         Lengths are divided by `size` and measured from `centre` (3,).
         """
@@ -76,7 +76,7 @@ class SampledFace:
         return np.asarray(basis[values < FACE_TOLERANCE * np.sqrt(len(rows))])
 
     def axis(self, centre: Floats, size: float) -> Axis | None:
-        """The only line about which it is of revolution; None for planes, spheres and others."""
+        """The axis of a face of revolution; None for planes, spheres and all other faces."""
         if self.plane:
             return None
         motions = self.motions(centre, size)
@@ -90,7 +90,7 @@ class SampledFace:
         return Axis(centre + size * np.cross(w, a), w)
 
     def revolved(self, axis: Axis, size: float) -> bool:
-        """Whether it is of revolution about an axis."""
+        """Whether the face is a surface of revolution about an axis. size: size of the body."""
         p = self.points - axis.point
         across = np.cross(axis.along, p)
         r = np.linalg.norm(across, axis=1)
@@ -99,7 +99,7 @@ class SampledFace:
 
 
 def sampled_face(gmsh: Any, tag: int, name: str) -> SampledFace:
-    """A face of the body in gmsh's model, by points on a grid of parameters and on its edges."""
+    """A face of the body in gmsh's model, sampled on a grid of parameters and on its edges."""
     model = gmsh.model
     low, high = model.getParametrizationBounds(2, tag)
     u, v = (a + FACE_GRID_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))

@@ -1,9 +1,10 @@
-"""The volume of a body in gmsh's model, also of one with spline surfaces.
+"""The volume of a body in gmsh's model, including bodies with spline surfaces.
 
-OpenCASCADE integrates over a face with few points: exactly on planes, cylinders, cones, spheres and
-tori, but 1 % wrong on the rational splines that are exact copies of these. There the surface is
-meshed with curved triangles instead, and the volume follows by the divergence theorem. (gmsh can
-curve them, too, but takes several times as long as for the mesh itself.)
+OpenCASCADE integrates over a face with few points. This is exact on planes, cylinders, cones,
+spheres and tori, but has errors of 1 % on the rational splines that are exact copies of these.
+Bodies with splines are therefore meshed with curved triangles, and the volume follows from the
+divergence theorem. (gmsh can curve triangles, too, but needs several times as long as for the mesh
+itself.)
 """
 
 from __future__ import annotations
@@ -15,24 +16,24 @@ import numpy as np
 from pinbase.arrays import Floats, Ints
 
 EXACT_FACES = frozenset({"Plane", "Cylinder", "Cone", "Sphere", "Torus"})  # gmsh's names
-# Elements over a full turn on two meshes. The error falls with the fourth power of their size and
-# is extrapolated: to 4e-7 on turned bodies with cones, fillets and domes, of which the second mesh
-# alone leaves 1e-5, the difference from which on a profile is refused.
+# Elements over a full turn on two meshes. The error falls with the fourth power of the element size
+# and is extrapolated. On turned bodies with cones, fillets and domes the extrapolated error is
+# 4e-7; that of the second mesh alone is 1e-5, the difference at which a profile is refused.
 CURVATURE_ELEMENTS = 12, 24
 CURVED_TRIANGLE = 9  # gmsh's number of the type with six nodes
 POINTS_RULE = "Gauss6"  # exact for x . n on triangles of second order
-EDGES = ((0, 1), (1, 2), (2, 0))  # of a triangle, in the order of the nodes in their middles
-# Of the length of an edge: how far the point in its middle may be from its chord. It is a fifteenth
-# on an arc with 12 elements around; farther where the ends' coordinates on the face do not belong
-# together, across a seam or at a pole.
+EDGES = ((0, 1), (1, 2), (2, 0))  # edges of a triangle, in the order of their midside nodes
+# Largest distance of the midside node of an edge from the chord, relative to the edge's length. On
+# an arc with 12 elements around it is a fifteenth. It is larger where the ends' coordinates on the
+# face do not belong together, across a seam or at a pole.
 MAX_RISE = 0.1
-SINGULAR = 1e-12  # of the squares of tangents
+SINGULAR = 1e-12  # regularisation at poles, relative to the squares of tangents
 
 
 def solid_volume(gmsh: Any, solid: tuple[int, int]) -> float:
     """The volume of a solid in gmsh's model, in the model's unit.
 
-    It may leave a mesh of the model's surfaces behind.
+    A mesh of the model's surfaces may remain in the model.
     """
     faces = [tag for _, tag in gmsh.model.getBoundary([solid], oriented=False)]
     if {gmsh.model.getType(2, tag) for tag in faces} <= EXACT_FACES:
@@ -51,9 +52,7 @@ def solid_volume(gmsh: Any, solid: tuple[int, int]) -> float:
 
 
 def _curved_triangles(gmsh: Any, face: int) -> Floats:
-    """The nodes (E, 6, 3) of a meshed face's triangles, those in the middles of edges on the face,
-    or on its boundary.
-    """
+    """The nodes (E, 6, 3) of a meshed face's triangles, with midside nodes on face or boundary."""
     mesh = gmsh.model.mesh
     tags, x, on_face = _nodes(mesh, (2, face))
     _, _, (nodes,) = mesh.getElements(2, face)
@@ -64,7 +63,7 @@ def _curved_triangles(gmsh: Any, face: int) -> Floats:
     index = {(a, b): k for k, (a, b) in enumerate(tags[edges].tolist())}
     for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
         _, _, ends = mesh.getElements(1, curve)
-        for pairs in ends:  # none of a curve without length, as at a pole
+        for pairs in ends:  # a curve without length, as at a pole, has none
             on_it, x_of_it, along = _nodes(mesh, (1, curve))
             parts = np.sort(np.reshape(pairs, (-1, 2)), axis=1)
             at = [index[a, b] for a, b in parts.tolist()]
@@ -74,8 +73,9 @@ def _curved_triangles(gmsh: Any, face: int) -> Floats:
 
 
 def _nodes(mesh: Any, entity: tuple[int, int]) -> tuple[Ints, Floats, Floats]:
-    """The nodes of an entity and its boundary in the order of their tags (N,), with their places
-    (N, 3) and their coordinates on it.
+    """The nodes of an entity and its boundary, in the order of their tags.
+
+    Returns tags (N,), places (N, 3), and coordinates on the entity (N, 1 or 2).
     """
     tags, x, on_it = mesh.getNodes(*entity, includeBoundary=True, returnParametricCoord=True)
     tags, first = np.unique(tags, return_index=True)
@@ -83,14 +83,15 @@ def _nodes(mesh: Any, entity: tuple[int, int]) -> tuple[Ints, Floats, Floats]:
 
 
 def _middles(gmsh: Any, entity: tuple[int, int], ends: Floats, on_it: Floats) -> Floats:
-    """The points (E, 3) of a curve or a face that are nearest to the middles of edges, by their
-    ends (E, 2, 3) and the coordinates of these on it.
+    """The points (E, 3) of a curve or a face that are nearest to the middles of edges.
+
+    ends: (E, 2, 3) ends of the edges. on_it: coordinates of these ends on the entity.
     """
     model = gmsh.model
     chord, at = ends.mean(axis=1), on_it.mean(axis=1)
     length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-    # The mean of the ends' coordinates is not in the middle of the arc: one step of Newton's method
-    # from there, by equations that are not singular at poles either.
+    # The mean of the ends' coordinates is not in the middle of the arc. One step of Newton's method
+    # starts from it, with equations that are not singular even at poles.
     tangents = np.reshape(model.getDerivative(*entity, at.ravel()), (len(at), -1, 3))
     off = chord - np.reshape(model.getValue(*entity, at.ravel()), (-1, 3))
     products = tangents @ tangents.swapaxes(1, 2)

@@ -1,4 +1,4 @@
-"""Triangles and tetrahedra clipped where z has a value, for meshes that end there."""
+"""Clipping of triangles and tetrahedra at values of z, for meshes that end there."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ import scipy.sparse as sp
 
 from pinbase.arrays import Floats, Ints
 
-# The eight tetrahedra of a quadratic one: those at its corners, and four about a diagonal of the
-# octahedron that remains.
+# The eight tetrahedra of a quadratic tetrahedron: four at its corners, and four around a diagonal
+# of the remaining octahedron.
 EIGHT_TETRAHEDRA = np.array(
     [
         *([0, 4, 6, 7], [1, 5, 4, 8], [2, 6, 5, 9], [3, 8, 7, 9]),
         *([4, 9, 5, 6], [4, 9, 6, 7], [4, 9, 7, 8], [4, 9, 8, 5]),
     ]
 )
-EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])  # in the order of their middles
+EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])  # in the order of midside nodes
 CORNERS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 NODES = np.concatenate([CORNERS, 0.5 * CORNERS[EDGES].sum(axis=1)])
-# What is left of a simplex whose first k corners are kept: simplices of corners i and of points on
-# edges (i, j) to corners that are lost.
+# The rest of a simplex of which the first k corners are kept, by k: simplices of corners i and of
+# points on edges (i, j) to corners that are lost.
 LEFT_OF_TRIANGLE = {1: ((0, (0, 1), (0, 2)),), 2: ((0, 1, (0, 2)), (1, (1, 2), (0, 2)))}
 LEFT_OF_TETRAHEDRON = {
     1: ((0, (0, 1), (0, 2), (0, 3)),),
@@ -31,21 +31,26 @@ LEFT_OF_TETRAHEDRON = {
 
 
 def clipped(z: Floats, cells: Ints, low: float, high: float) -> tuple[Ints, sp.csr_matrix]:
-    """The parts of triangles (M, 3) or tetrahedra (M, 4) between two z, m.
+    """The parts of triangles (M, 3) or tetrahedra (M, 4) between z = low and z = high, m.
 
-    z: (N,) of their nodes. Returns cells, and a matrix (N', N) that takes values at the nodes to
-    these and the new ones, linear along edges.
+    z: (N,) z of the nodes, m.
+
+    Returns the cells, and a matrix (N', N) that interpolates values from the old nodes to the old
+    and new nodes, linearly along edges.
     """
     to_nodes = sp.eye(len(z), format="csr")
     for level, sign in ((low, 1.0), (high, -1.0)):
-        cells, more = _one_side(sign * (np.asarray(to_nodes @ z) - level), cells)
-        to_nodes = (more @ to_nodes).tocsr()
+        cells, to_new = _one_side(sign * (np.asarray(to_nodes @ z) - level), cells)
+        to_nodes = (to_new @ to_nodes).tocsr()
     return cells, to_nodes
 
 
 def _one_side(above: Floats, cells: Ints) -> tuple[Ints, sp.csr_matrix]:
     """The parts of cells where values (N,) at the nodes are positive, as for `clipped`."""
     patterns = LEFT_OF_TRIANGLE if cells.shape[1] == 3 else LEFT_OF_TETRAHEDRON
+    # Sort the corners of each cell by value, so that the kept corners come first. Cells without
+    # negative corners are kept whole; all others are cut by the pattern of their number of kept
+    # corners.
     order = np.argsort(-above[cells], axis=1, kind="stable")
     count = np.sum(above[cells] > 0.0, axis=1)
     out, ends = [cells[(above[cells] >= 0.0).all(axis=1)]], [np.zeros((0, 2), dtype=np.int64)]
@@ -63,6 +68,7 @@ def _one_side(above: Floats, cells: Ints) -> tuple[Ints, sp.csr_matrix]:
                 ends.append(nodes[:, list(corner)])
                 first += len(nodes)
             out.append(np.stack(columns, axis=1))
+    # New nodes: on each cut edge, where the linear interpolation is zero.
     edges = np.concatenate(ends)
     a, b = above[edges].T
     part = a / np.where(a == b, 1.0, a - b)
@@ -77,18 +83,20 @@ def halved(
 ) -> tuple[Ints, sp.csr_matrix]:
     """Quadratic tetrahedra (M, 10), of which those with bent or long edges are divided into eight.
 
-    What shows quadratic tetrahedra takes them as eight flat ones, linear on each. Of a coarse
-    cylinder these lose 1 % of the area, and of the shear force 2 %.
-    bent: least distance of the middle of an edge from its chord, of the chord's length.
-    long: least length, m, of all or of each (M,).
-    Returns cells, and a matrix as `clipped`.
+    Viewers draw a quadratic tetrahedron as eight flat linear ones. On a coarse cylinder these lose
+    1 % of the area, and 2 % of the shear force.
+    points: (N, 3) nodes, m.
+    bent: an edge is bent if its middle is farther from its chord, relative to the chord's length.
+    long: an edge is long if its length exceeds this, m; one value, or one for each cell (M,).
+
+    Returns the cells, and a matrix as for `clipped`.
     """
     ends = points[cells[:, EDGES]]
     off = np.linalg.norm(points[cells[:, 4:]] - ends.mean(axis=2), axis=2)
     length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
     chosen = (off > bent * length).any(axis=1) | (length.max(axis=1) > long)
     parents = cells[chosen]
-    # Nodes of the eight are middles of two nodes of their parent, which neighbours share.
+    # New nodes are midpoints of two nodes of the parent; neighbouring parents share them.
     pairs = np.sort(EIGHT_TETRAHEDRA[:, EDGES], axis=2)  # (8, 6, 2)
     local, which = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
     weights = _quadratic(0.5 * NODES[local].sum(axis=1))  # (J, 10)
@@ -107,15 +115,16 @@ def halved(
 
 
 def _quadratic(x: Floats) -> Floats:
-    """The shape functions (P, 10) of a quadratic tetrahedron at points (P, 3) of the unit one."""
+    """Shape functions (P, 10) of a quadratic tetrahedron at points (P, 3) of the unit element."""
     b = np.concatenate([1.0 - x.sum(axis=1, keepdims=True), x], axis=1)
     return np.concatenate([b * (2.0 * b - 1.0), 4.0 * b[:, EDGES].prod(axis=2)], axis=1)
 
 
 def upright(points: Floats, cells: Ints) -> Ints:
-    """Triangles or tetrahedra whose area or volume is positive: two corners are exchanged else.
+    """Triangles or tetrahedra with positive area or volume; where it is negative, corners swap.
 
-    points: (N, 2) or (N, 3). Those without any are left out.
+    Cells without area or volume are left out.
+    points: (N, 2) or (N, 3).
     """
     edges = points[cells[:, 1:]] - points[cells[:, :1]]
     size = np.linalg.det(edges)
@@ -124,6 +133,6 @@ def upright(points: Floats, cells: Ints) -> Ints:
 
 
 def gaps(ends: list[tuple[float, float]], length: float) -> list[tuple[float, float]]:
-    """The intervals of z between others in a row, from 0 to a length, m."""
+    """The intervals of z, m, that given intervals leave free between 0 and a length."""
     flat = [0.0, *(z for pair in ends for z in pair), length]
     return [(a, b) for a, b in list(pairwise(flat))[::2] if b > a]

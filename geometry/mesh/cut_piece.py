@@ -1,4 +1,4 @@
-"""The piece of a cut pin around its cuts, or its part between mirror planes, as tetrahedra."""
+"""Meshes of tetrahedra of the piece of a cut pin around its cuts, or of its symmetric part."""
 
 from __future__ import annotations
 
@@ -23,35 +23,36 @@ from geometry.shape.recess import Recess
 
 Spots = Sequence[tuple[float, float, float]]
 
-# Element sizes on the first mesh, away from cuts and then at them.
+# Element sizes on the first mesh, away from cuts; those at cuts follow.
 REMOTE_MESH_SIZE = MeshSize(across=2.5, corner=1.0, arc=1.0, growth=0.6)
-QUARTER_CIRCLE_ELEMENTS = 6.0  # on a quarter of a hole's edge
-SLOT_EDGE_SIZE_RATIO = 1.4  # size at the edges of slots, which are long, over that of holes
-# Elements on the quarter circle of a rounded corner, and of one at the bottom of a slot.
+QUARTER_CIRCLE_ELEMENTS = 6.0  # elements on a quarter of a hole's edge
+SLOT_EDGE_SIZE_RATIO = 1.4  # element size at the edges of slots, which are long, over that of holes
+# Elements on the quarter circle of a rounded corner, and of a corner at the bottom of a slot.
 CORNER_ARC_ELEMENTS, SLOT_ARC_ELEMENTS = 4.0, 2.5
-SHARP_CORNER_SIZE = 0.07  # size at a sharp inner corner, over a cut's size
-FLAT_FACE_SIZE = 0.12  # size on a flat, over the pin's diameter
-# Size on the wall of a cut over that at its edge, and the same of passages.
+SHARP_CORNER_SIZE = 0.07  # element size at a sharp inner corner, over the cut's size
+FLAT_FACE_SIZE = 0.12  # element size at a flat, over the pin's diameter
+# Element size on the wall of a cut over that at its edge, then the same ratio for passages.
 WALL_SIZE_RATIO, PASSAGE_WALL_SIZE_RATIO = 1.5, 2.0
-# Sizes at recesses grow with this power of their number in a piece, of which a spline has many.
+# Element sizes at recesses grow with this power of the number of recesses in a piece; a spline has
+# many of them.
 MANY_RECESSES_POWER = 1.0 / 3.0
-SIZE_STEP = 1.1  # ratio of sizes at recesses
-PIECE_SIZE_GROWTH = 0.45  # increase of the size per distance from a cut
+SIZE_STEP = 1.1  # ratio between successive steps of element sizes at recesses
+PIECE_SIZE_GROWTH = 0.45  # increase of the element size per distance from a cut
 # Elements are small around a spot within SPOT_ELEMENT_ROWS rows, at most this part of a cut's size.
 MAX_SPOT_REACH = 0.2
 SPOT_ELEMENT_ROWS = 6.0
-SPOT_TOLERANCE = 1e-3  # of a cut's size: a spot this close to one of its surfaces lies on it
+SPOT_TOLERANCE = 1e-3  # of a cut's size: a spot this close to a rounded corner lies on it
 
 
 @dataclass(frozen=True)
 class Piece:
     """A piece of a pin with the cuts in it.
 
-    profile: the piece without cuts, from its own z = 0 on.
+    profile: the piece without cuts, in its own frame from z = 0.
     z0, z1: ends of the piece along the pin, m.
     angle: rotation of the piece's frame about the pin's axis, rad.
-    cuts: by name, in the piece's frame.
-    mirrors: planes of symmetry, on whose positive side alone the piece is meshed: "x" and "y" are
+    cuts: cuts by name, in the piece's frame.
+    mirrors: planes of symmetry; only the positive side of each is meshed. "x" and "y" are
     perpendicular to these axes and contain the pin's axis, "z" is midway between z0 and z1.
     open_ends: whether the pin continues below z0 and above z1.
     """
@@ -66,7 +67,7 @@ class Piece:
 
     @property
     def origin(self) -> float:
-        """z of the lower end of what is meshed, m: z0, or the mirror plane."""
+        """Position z of the lower end of the meshed part, m: z0, or the mirror plane."""
         return 0.5 * (self.z0 + self.z1) if "z" in self.mirrors else self.z0
 
     @property
@@ -76,7 +77,7 @@ class Piece:
 
     @property
     def smallest(self) -> float:
-        """Smallest size of its cuts, m."""
+        """Size of the smallest cut, m."""
         return min(self.across(cut) for cut in self.cuts.values())
 
     def across(self, cut: Cut) -> float:
@@ -97,7 +98,8 @@ class Piece:
 def clipped(pin: Pin, z0: float, z1: float) -> Pin:
     """The part of a pin from z0 to z1, moved to z = 0.
 
-    Surfaces keep their names, except "start" and "end". z0, z1: m, not within a fillet.
+    Surfaces keep their names, except "start" and "end".
+    z0, z1: ends of the part, m, not within a fillet.
     """
     segments = []
     for i, (s, a) in enumerate(zip(pin.segments, pin.stations, strict=False)):
@@ -121,13 +123,14 @@ def piece_mesh(
 ) -> SolidMesh:
     """The mesh of a piece, on the positive side of its mirror planes.
 
-    Boundaries: the planes are "mirror x", "mirror y" and, for "z", "start"; smooth parts of cuts
-    are "hole 1 wall" and so on.
+    The boundaries of mirror planes are "mirror x", "mirror y" and, for "z", "start". Those of
+    smooth parts of cuts are "hole 1 wall" and so on.
     finer: fineness at the edges of cuts, relative to the first mesh.
-    spots: points (x, y, z) near cuts, m. at_spots: fineness there, relative to the first mesh.
-    most: unknowns that are allowed.
+    spots: points (x, y, z) near cuts, m.
+    at_spots: fineness at the spots, relative to the first mesh.
+    most: largest number of unknowns that is allowed.
 
-    Raises: MeshError; GeometryError as geometry.mesh.cut_solid.
+    Raises: MeshError where no valid mesh is found; GeometryError as in geometry.mesh.cut_solid.
     """
     cause = "a cut that almost touches another surface"
 
@@ -158,7 +161,8 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float, most: flo
             inner = min(flat, SPOT_ELEMENT_ROWS * h)
             d = f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2+(z-({z!r}))^2)-{inner!r}"
             fields.append(formula_size(gmsh, f"{h!r}+{PIECE_SIZE_GROWTH / 2!r}*({d}+Fabs({d}))"))
-        # With gmsh's 1e-9, edges on which the size has kinks take up to 20 times all other time.
+        # With gmsh's default of 1e-9, edges on which the size has kinks take up to 20 times as long
+        # as everything else.
         gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
         set_sizes(gmsh, scaled.profile, REMOTE_MESH_SIZE.finer(finer**0.5), (), fields)
         require_few(gmsh, scaled.profile.name, most)
@@ -170,9 +174,9 @@ def _mesh(piece: Piece, size: MeshSize, spots: Spots, at_spots: float, most: flo
 
 
 def _upper_half(gmsh: Any, piece: Piece) -> None:
-    """Make the solid above a piece's mirror plane, by halving the piece after it is cut.
+    """Make the solid above a piece's mirror plane "z", by halving the piece after it is cut.
 
-    A rounded mouth that the plane divides can only be made on the undivided piece.
+    OpenCASCADE can round a mouth that the plane divides only on the undivided piece.
     """
     occ, pin, length = gmsh.model.occ, piece.profile, piece.profile.length
     first, *others = pin.segments
@@ -200,7 +204,7 @@ def _edge_size(piece: Piece, cut: Cut) -> float:
 
 
 def _arc_size(cut: Cut, radius: float) -> float:
-    """Element size on a rounded corner of a cut on the first mesh, m. radius: of the corner, m."""
+    """Element size on a cut's rounded corner of a `radius` (m) on the first mesh, m."""
     return (
         math.pi
         * radius
@@ -265,8 +269,10 @@ def _sizes(
 def _sizes_of_recesses(
     gmsh: Any, piece: Piece, parts: dict[tuple[str, str], list[int]], finer: float
 ) -> list[int]:
-    """Size fields at the faces and edges of recesses; one for all that have a size, since a spline
-    has many. The arguments are those of _sizes.
+    """Size fields at the faces and edges of recesses.
+
+    There is one field for all entities of the same size, because a spline has many recesses.
+    piece, parts, finer: as for `_sizes`.
     """
     recesses = {name: cut for name, cut in piece.cuts.items() if isinstance(cut, Recess)}
     coarser = max(1, len(recesses)) ** MANY_RECESSES_POWER
@@ -301,7 +307,7 @@ def _sizes_of_recesses(
 
 
 def _step(size: float) -> float:
-    """A size rounded down to a step, which sizes that are nearly alike share."""
+    """A size rounded down to a power of SIZE_STEP, so that nearly equal sizes become equal."""
     return float(SIZE_STEP ** math.floor(math.log(size * (1.0 + 1e-9)) / math.log(SIZE_STEP)))
 
 

@@ -1,4 +1,4 @@
-"""A pin turned on a lathe and then drilled and milled in places."""
+"""A pin that is turned on a lathe, then drilled and milled."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class CutPin:
 
     @property
     def revolved(self) -> bool:
-        """Whether it is a body of revolution, without cuts."""
+        """Whether the pin is a body of revolution: it has no cuts."""
         return not self.cuts
 
     @property
@@ -106,13 +106,13 @@ class CutPin:
         return self.profile.connections
 
     def band(self, name: str) -> Band:
-        """The outer surface called `name`, before it is cut."""
+        """The outer surface called `name`, before cutting."""
         return self.profile.band(name)
 
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study, also "hole 1", "flat 1" and so on.
+        """The mesh boundary for a name in a study, including "hole 1", "flat 1" and so on.
 
-        Raises: GeometryError that lists the names there are.
+        Raises: GeometryError for an unknown name, with a list of all names.
         """
         if name in self.cuts:
             return name
@@ -126,7 +126,7 @@ class CutPin:
         """Volume of the solid that OpenCASCADE cuts, m^3.
 
         Raises: GeometryError where the cuts leave several pieces, or remove all of a band or of
-        another cut; MeshError.
+        another cut; MeshError where OpenCASCADE fails.
         """
         if self.revolved:
             return self.profile.volume
@@ -138,7 +138,7 @@ class CutPin:
             return float(gmsh.model.occ.getMass(*solid)) * unit**3
 
     def require_whole(self) -> None:
-        """Raises: as `volume`, which is computed here."""
+        """Compute the volume, and raise its errors."""
         assert self.volume > 0.0
 
     def scaled(self, factor: float) -> CutPin:
@@ -148,7 +148,7 @@ class CutPin:
 
 
 def _require_own_name(profile: Pin, cut: str, at: Place) -> None:
-    """Raises: GeometryError where the profile has the name of a cut or of a part of it."""
+    """Raise GeometryError where a segment of the profile has the name of a cut or of its part."""
     for segment in profile.segments:
         for name in (segment.connection, segment.name):
             if name and f"{name} ".startswith(f"{cut} "):
@@ -161,7 +161,7 @@ def _require_own_name(profile: Pin, cut: str, at: Place) -> None:
 
 
 def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:
-    """The cuts by their names, kind and number."""
+    """The cuts by name, which consists of kind and number."""
     named: dict[str, Cut] = {}
     count = dict.fromkeys((cut.what for cut in cuts), 0)
     for cut in cuts:

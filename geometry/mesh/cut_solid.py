@@ -23,36 +23,38 @@ from geometry.shape.profile import Edge, kind_of, meridian, off_edge
 from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
-Cuts = Mapping[str, Cut]  # by their names, such as "hole 1"
+Cuts = Mapping[str, Cut]  # cuts by name, such as "hole 1"
 Parts = Mapping[tuple[str, str], list[int]]  # face tags by name and part (named_parts)
 Entity = tuple[int, int]
 
 MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # the coordinate that vanishes on each plane
-# Of the pin's size: OpenCASCADE's curves lie up to 1e-5 off both their surfaces.
+# Relative to the pin's size: largest deviation of a face from the surface that it matches.
+# OpenCASCADE's curves lie up to 1e-5 off both their surfaces.
 MAX_CURVE_DEVIATION = 1e-4
 CURVE_TOLERANCE = 1e-6  # of the pin's size: a curve this close to a surface lies on it
-# Across a quarter circle, on the first mesh: with fewer its facets turn by so much that the corner
-# looks sharp (fea.solid.sharp_edges). FIRST_ACROSS: the fineness of that mesh.
+# Least elements across a quarter circle on the first mesh. With fewer, facets turn by so much that
+# the corner looks sharp (fea.solid.sharp_edges). FIRST_ACROSS: the fineness of that mesh.
 ARC_ELEMENTS, FIRST_ACROSS = 3.0, 4.0
-# Of the pin's length: surfaces this close are one. Dimensions of a pin from a file are rounded to
-# 1e-7, and the solids that it removes end in its surface.
+# Relative to the pin's length: surfaces this close coincide. Dimensions of a pin from a file are
+# rounded to 1e-7, and the solids that it removes end in its surface.
 BOOLEAN_TOLERANCE = 1e-6
-MAX_PART_DISTANCE = 0.2  # of a recess's width: a face farther from all of its faces is none of them
-EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of the length of a curve
+MAX_PART_DISTANCE = 0.2  # of a recess's width: a face at a larger distance is not part of it
+EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of a curve's range of parameters
 
 
 def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) -> Entity:
-    """Make the solid of a pin with cuts, or a sector of it, in gmsh's model; returns its entity.
+    """Make the solid of a pin with cuts, or a sector of it, in gmsh's model; return its entity.
 
-    sector: rad, from x on.
+    sector: angle of the sector, from x, rad.
 
-    Raises: GeometryError when the cuts leave several pieces or none.
+    Raises: GeometryError when the cuts leave several pieces or none; MeshError where gmsh cannot
+    round the mouth of a hole.
     """
     occ, reach = gmsh.model.occ, 2.0 * pin.largest_diameter
     rounded = [c for c in cuts.values() if isinstance(c, Hole) and c.mouth_radius]
     body = revolve(gmsh, meridian(pin), sector)
-    # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth; and
-    # gmsh may fail on faces that it divides.
+    # OpenCASCADE can only round whole edges, so the body's seam must not cross a rounded mouth. And
+    # gmsh may fail on faces of recesses that the seam divides.
     recesses = [c for c in cuts.values() if isinstance(c, Recess)]
     if (rounded or recesses) and sector == 2.0 * math.pi:
         seams = np.linspace(0.0, 2.0 * math.pi, 25)[:-1]
@@ -68,22 +70,22 @@ def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) ->
     tools = [tool for cut in cuts.values() for tool in _tool(gmsh, pin, cut, reach)]
     if any(isinstance(cut, Recess) for cut in cuts.values()):
         gmsh.option.setNumber("Geometry.ToleranceBoolean", BOOLEAN_TOLERANCE * pin.length)
-    left, _ = occ.cut([body], tools)
+    pieces, _ = occ.cut([body], tools)
     occ.synchronize()
-    if rounded and len(left) == 1:
+    if rounded and len(pieces) == 1:
         for hole in rounded:
-            left = _round_mouths(gmsh, left, hole, pin)
-    if len(left) != 1:
+            pieces = _round_mouths(gmsh, pieces, hole, pin)
+    if len(pieces) != 1:
         raise GeometryError(
-            f"pin {pin.name}: the cuts split the pin into {len(left)} pieces; move them or make "
+            f"pin {pin.name}: the cuts split the pin into {len(pieces)} pieces; move them or make "
             "them smaller",
             "cut-apart",
         )
-    return int(left[0][0]), int(left[0][1])
+    return int(pieces[0][0]), int(pieces[0][1])
 
 
 def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
-    """The volume that a cut removes, beyond the pin's surface by up to `reach`."""
+    """The volume that a cut removes, extended beyond the pin's surface by up to `reach`."""
     occ = gmsh.model.occ
     if isinstance(cut, Hole) and cut.plain:
         at = cut.placed(pin, reach)
@@ -106,7 +108,7 @@ def _tool(gmsh: Any, pin: Pin, cut: Cut, reach: float) -> list[Entity]:
 
 
 def _read_solid(gmsh: Any, recess: Recess) -> Entity:
-    """The solid of a recess, at its place. Lengths are in its unit."""
+    """The solid of a recess, at its place. Lengths are in the recess's unit."""
     occ = gmsh.model.occ
     with tempfile.TemporaryDirectory() as folder, silence():
         path = Path(folder) / "solid.brep"
@@ -131,9 +133,9 @@ def _turned(gmsh: Any, placed: Placed) -> Entity:
 def _prism(
     gmsh: Any, z: tuple[float, float], u: tuple[float, float], half: float, rounded: bool
 ) -> Entity:
-    """A prism between two z and two distances u from the axis along x, with round or square ends.
+    """A prism between two z and two distances u from the axis along x.
 
-    half: half of its width along y.
+    half: half of the width along y. rounded: whether the ends in z are round; otherwise square.
     """
     occ, (z0, z1), (floor, top) = gmsh.model.occ, z, u
     if not rounded:
@@ -160,7 +162,7 @@ def _prism(
 
 
 def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> Entity:
-    """The tool of a cut with the edges of its floor rounded; for a flat, only those across."""
+    """The tool of a cut with rounded edges of its floor; for a flat, only edges across the pin."""
     gmsh.model.occ.synchronize()
     tolerance = CURVE_TOLERANCE * (cut.z1 - cut.z0)
     edges = []
@@ -177,7 +179,7 @@ def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> En
 def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[Entity]:
     """The body with the edges rounded at which a hole meets the outer surface.
 
-    Raises: MeshError where gmsh cannot.
+    Raises: MeshError where gmsh cannot round them.
     """
     tolerance, r = 10.0 * CURVE_TOLERANCE * pin.largest_diameter, outer_radius(pin, hole.z)
     placed, edges = hole.placed(pin, 4.0 * r), set()
@@ -217,10 +219,11 @@ def named_parts(
     """Face tags of the solid by name and part, such as ("hole 1", "wall").
 
     Faces of the profile's edges have the part "".
-    planes: the mirror planes of a sector, keys of MIRROR_COMPONENTS.
-    whole: whether all cuts, end faces and bands that bear must be there.
+    planes: mirror planes of a sector, keys of MIRROR_COMPONENTS.
+    whole: whether all cuts, end faces and bands on which links bear must be present.
 
-    Raises: GeometryError when a feature is cut away by others; MeshError.
+    Raises: GeometryError when a feature is cut away by others; MeshError for a face that matches no
+    surface of the pin.
     """
     size = max(pin.length, pin.largest_diameter)
     known: list[tuple[tuple[str, str], str, Off]] = []
@@ -228,8 +231,8 @@ def named_parts(
         if e.name:
             known.append(((e.name, ""), kind_of(e), _off_edge(e)))
     known += [((plane, ""), "Plane", _off_mirror(MIRROR_COMPONENTS[plane])) for plane in planes]
-    # Cuts come last: the first of equal matches is chosen, and a shoulder in the plane of a flat's
-    # end is the shoulder.
+    # Cuts come last, because the first of equal matches is chosen: a shoulder in the plane of a
+    # flat's end counts as the shoulder.
     for name, cut in cuts.items():
         if not isinstance(cut, Recess):
             known += [((name, s.part), s.kind, s.off) for s in cut.surfaces(pin)]
@@ -282,7 +285,7 @@ def name_faces(parts: Parts, cuts: Cuts) -> dict[str, list[int]]:
 
 
 def _require_all(pin: Pin, cuts: Cuts, names: Collection[str]) -> None:
-    """Raises: GeometryError where a cut, a band that bears, or an end face is not among `names`."""
+    """Raise GeometryError where a cut, a band with a link, or an end face is not in `names`."""
     required = (*END_FACES, *pin.connections, *cuts)
     if missing := [name for name in required if name not in names]:
         cut = next((name for name in missing if name in cuts), "").split()
@@ -298,7 +301,7 @@ def _points(gmsh: Any, face: int) -> Floats:
     model = gmsh.model
     curves = model.getBoundary([(2, face)], combined=False, oriented=False)
     points = [_along(gmsh, curve) for _, curve in curves]
-    if model.getType(2, face) == "Cylinder":  # its edges may all lie on another cylinder, too
+    if model.getType(2, face) == "Cylinder":  # all its edges may also lie on another cylinder
         low, high = model.getParametrizationBounds(2, face)
         u, v = np.meshgrid(
             *(a + np.array(EDGE_SAMPLE_FRACTIONS) * (b - a) for a, b in zip(low, high, strict=True))
@@ -314,7 +317,7 @@ def _off_edge(edge: Edge) -> Off:
 
 
 def _off_mirror(axis: int) -> Off:
-    """Distance of points from the plane across an axis (0 for x, 1 for y)."""
+    """Distance of points from the plane x = 0 (axis 0) or y = 0 (axis 1)."""
     return lambda x: np.asarray(x[:, axis])
 
 
@@ -323,10 +326,11 @@ def grade(
 ) -> list[int]:
     """Size fields at cuts.
 
-    Holes have 4 `finer` elements around, their edges twice as many; edges of flats have half of the
-    size `far`. Across rounded corners of other cuts there are at least ARC_ELEMENTS.
-    parts: tags by name and part (named_parts). far: largest element size, m. growth: increase of
-    the size per distance.
+    Holes have 4 times `finer` elements around their circumference, and twice as many at their
+    edges. Elements at edges of flats have half of the size `far`. Across rounded corners of other
+    cuts there are at least ARC_ELEMENTS elements.
+    parts: face tags by name and part (named_parts). far: largest element size, m.
+    growth: increase of the size per distance.
     """
     tags, faces = [], name_faces(parts, cuts)
     for name, cut in cuts.items():
@@ -352,10 +356,10 @@ def _edges(gmsh: Any, faces: list[int]) -> list[int]:
 
 
 def near(gmsh: Any, what: str, tags: list[int], h: float, growth: float) -> int:
-    """A size field that is h on entities and grows with the distance from them.
+    """Tag of a size field that is h on entities and grows with the distance from them.
 
-    what: gmsh's name for the list of entities, "CurvesList" or "SurfacesList". tags: the entities.
-    growth: increase of the size per distance.
+    what: gmsh's name for the list of entities, "CurvesList" or "SurfacesList".
+    tags: tags of the entities. growth: increase of the size per distance.
     """
     field = gmsh.model.mesh.field
     distance = field.add("Distance")

@@ -1,4 +1,4 @@
-"""Kinds of tetrahedra, which differ in the number of nodes and the shape of their sides."""
+"""Kinds of tetrahedra, which differ in the number of nodes and the shape of their edges."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 
 from skfem import MeshTet1, MeshTet2
 
-# 4 nodes; 10 nodes, 6 of them midway along straight sides; 10 nodes on curved sides.
+# 4 nodes; 10 nodes with straight edges, 6 nodes at their middles; 10 nodes with curved edges.
 Element = Literal["linear", "straight", "curved"]
 
 

@@ -1,4 +1,4 @@
-"""The number of unknowns of a mesh of tetrahedra, by its size fields, before gmsh makes it."""
+"""The number of unknowns of a mesh of tetrahedra, estimated from its size fields before meshing."""
 
 from __future__ import annotations
 
@@ -11,28 +11,29 @@ from scipy.spatial import KDTree
 from geometry.mesh.gmsh_session import MeshError
 from pinbase.arrays import Floats
 
-MAX_UNKNOWNS = 5e6  # of any mesh; gmsh takes minutes to make it
-EXPECTED_WITHIN = 2.0  # factor between expected and actual unknowns; 0.64 to 1.43 are measured
-# Of curved tetrahedra of size h in the volume V, fitted to 40 meshes (benchmarks expected has some
-# of these): the first times V / h^3, the second times its power of 2/3, for nodes on the surface.
+MAX_UNKNOWNS = 5e6  # largest number in any mesh, which takes gmsh minutes to make
+EXPECTED_WITHIN = 2.0  # factor allowed between expected and actual unknowns; measured 0.64 to 1.43
+# Unknowns of curved tetrahedra of size h in a volume V. The first factor is multiplied by
+# N = V / h^3, the second by N^(2/3), for nodes on the surface. Both are fitted to 40 meshes, some
+# of which are in the benchmark "expected".
 UNKNOWNS_PER_VOLUME, UNKNOWNS_PER_SURFACE = 27.0, 100.0
-CELL_SIZE_RATIO = 2.0  # side of a cell over the element size in its middle, at most
-FIRST_CELLS = 8  # along the longest side of the box about the body
-MAX_CELLS = 200_000  # those that are too large then count as they are
-BODY_SAMPLES = 600  # cells of which is found out whether they are in the body
-CURVE_SAMPLES, FACE_SAMPLES = 100, 16  # along a curve, and along either direction of a face
+CELL_SIZE_RATIO = 2.0  # largest ratio of the side of a cell to the element size in its middle
+FIRST_CELLS = 8  # number of cells along the longest side of the box around the body
+MAX_CELLS = 200_000  # beyond this number, cells that are too large are not divided any more
+BODY_SAMPLES = 600  # sample points that show which share of the cells is in the body
+CURVE_SAMPLES, FACE_SAMPLES = 100, 16  # samples along a curve, and along each direction of a face
 
 
 def require_few(gmsh: Any, name: str, most: float) -> None:
     """Check that the mesh of gmsh's model will not have too many unknowns.
 
-    name: of the pin. most: unknowns allowed, beside MAX_UNKNOWNS.
+    name: name of the pin. most: limit on the unknowns, beside MAX_UNKNOWNS; the smaller one holds.
 
-    Raises: MeshError where even half of those expected are too many.
+    Raises: MeshError where even half of the expected unknowns are too many.
     """
     sizes, limit = _Sizes(gmsh), min(most, MAX_UNKNOWNS)
     cells = _Cells(gmsh, sizes)
-    if unknowns(cells.elements) <= EXPECTED_WITHIN * limit:  # with what is outside of the body
+    if unknowns(cells.elements) <= EXPECTED_WITHIN * limit:  # including cells outside the body
         return
     if (expected := unknowns(cells.elements * cells.inside(gmsh))) <= EXPECTED_WITHIN * limit:
         return
@@ -48,26 +49,26 @@ def require_few(gmsh: Any, name: str, most: float) -> None:
 
 
 def expected_unknowns(gmsh: Any) -> float:
-    """The unknowns of the curved tetrahedra that gmsh is going to make of its model."""
+    """The expected unknowns of the mesh of curved tetrahedra that gmsh will make of its model."""
     cells = _Cells(gmsh, _Sizes(gmsh))
     return unknowns(cells.elements * cells.inside(gmsh))
 
 
 def unknowns(elements: float) -> float:
-    """The unknowns of a mesh by its volume over the cube of its size."""
+    """The unknowns of a mesh. elements: its volume over the cube of the element size."""
     return float(UNKNOWNS_PER_VOLUME * elements + UNKNOWNS_PER_SURFACE * elements ** (2.0 / 3.0))
 
 
 def _plain(number: float) -> str:
-    """A large number with two digits that matter."""
+    """A large number as text with two significant digits."""
     return f"{float(f'{number:.2g}'):,.0f}"
 
 
 class _Cells:
-    """Cubes that fill the box about gmsh's model, small where its elements are small.
+    """Cubes that fill the box around gmsh's model, small where its elements are small.
 
-    elements: the sum of their volumes over the cubes of the element sizes in them.
-    smallest: size of an element, of the longest side of the box.
+    elements: sum over the cubes of volume over element size cubed.
+    smallest: smallest element size, relative to the longest side of the box.
     """
 
     def __init__(self, gmsh: Any, sizes: _Sizes) -> None:
@@ -78,6 +79,7 @@ class _Cells:
         middles = box[0] + side * _grid(*(np.arange(n) + 0.5 for n in counts))
         found: list[tuple[Floats, Floats, Floats]] = []
         least, many = longest, 0
+        # Divide cells into eight until each is small compared with its elements.
         while len(middles):
             h = sizes.at(middles)
             done = side <= CELL_SIZE_RATIO * h
@@ -93,7 +95,7 @@ class _Cells:
         self.elements, self.smallest = float(self._elements.sum()), least / longest
 
     def inside(self, gmsh: Any) -> float:
-        """The share of the elements that is inside of the body, from a sample."""
+        """The share of the elements that is inside the body, from a random sample."""
         rng, sums = np.random.default_rng(1), np.cumsum(self._elements)
         at = (np.arange(BODY_SAMPLES) + rng.random(BODY_SAMPLES)) / BODY_SAMPLES * sums[-1]
         cell = np.minimum(np.searchsorted(sums, at), len(sums) - 1)
@@ -104,7 +106,7 @@ class _Cells:
 
 
 class _Sizes:
-    """The size fields of gmsh's model, which gmsh evaluates in its own meshes only."""
+    """The size fields of gmsh's model, evaluated here, because gmsh does so only while meshing."""
 
     def __init__(self, gmsh: Any) -> None:
         field = gmsh.model.mesh.field
@@ -119,13 +121,13 @@ class _Sizes:
         x, y, z = points.T
         known = {"x": x, "y": y, "z": z, "Sqrt": np.sqrt, "Fabs": np.abs}
         known |= {name: tree.query(points)[0] for name, tree in self._near.items()}
-        # The formulas are our own (geometry.mesh.gmsh_session.formula_size).
+        # eval is safe: all formulas come from this program (gmsh_session.formula_size).
         sizes = [eval(formula, {"__builtins__": {}}, known) for formula in self._formulas]
         return np.asarray(np.min(np.broadcast_arrays(x, *sizes)[1:], axis=0))
 
 
 def _cloud(gmsh: Any, distance: int) -> Floats:
-    """Points (P, 3) on the curves and faces from which a field counts the distance."""
+    """Points (P, 3) on the curves and faces from which a field measures the distance."""
     field, model = gmsh.model.mesh.field, gmsh.model
     curves = [int(tag) for tag in field.getNumbers(distance, "CurvesList")]
     points: list[float] = []

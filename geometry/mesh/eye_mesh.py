@@ -1,4 +1,4 @@
-"""The section of a lug's eye, a rectangle, as a grid of triangles that are fine at its bore."""
+"""The mesh of a lug's eye, whose rectangular section is a grid of triangles, fine at the bore."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from geometry.mesh.section_mesh import MeridianMesh
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats
 
-LAYER_GROWTH = 1.6  # of each layer over the one before, from the bore outwards
-MIN_WALL_ELEMENTS = 2.0  # with one element pressure at a rounded edge is 6 % high, at a bushing 3 %
+LAYER_GROWTH = 1.6  # ratio of each layer to the one before, from the bore outwards
+# With a single element, the pressure at a rounded edge is 6 % too high, at a bushing 3 %.
+MIN_WALL_ELEMENTS = 2.0
 
 
 def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> MeridianMesh:
     """The mesh of a lug's annulus, with one surface for each segment outside and in the bore.
 
-    across: elements over the bore's diameter where it is pressed; each ring, and the wall between
-    bore and interface, has at least MIN_WALL_ELEMENTS of them.
-    interface: a radius, m, along which elements end.
+    across: element size at the bore, as elements per diameter of the bore; each ring, and the wall
+    between bore and interface, has at least MIN_WALL_ELEMENTS elements.
+    interface: radius, m, along which elements end, or None.
     """
     bore, outer = eye.segments[0].bore / 2.0, eye.segments[0].diameter / 2.0
     ends = [bore, *([] if interface is None else [interface]), outer]
@@ -34,16 +35,19 @@ def eye_mesh(eye: Pin, across: float, interface: float | None = None) -> Meridia
 
 
 def _even(start: float, end: float, size: float) -> Floats:
-    """The ends of elements after the start, of `size` at most."""
+    """The ends of equal elements of at most `size` from start to end, without the start."""
     count = max(1, int(np.ceil((end - start) / size - 1e-9)))
     return np.linspace(start, end, count + 1)[1:]
 
 
 def _layers(ends: list[float], size: float) -> list[Floats]:
-    """The radii after the first of `ends`, from `size` on growing outwards, with the others among
-    them.
+    """The radii of layers after the first of `ends`, which include the other ends.
+
+    size: thickness of the first layer, m; layers grow outwards.
     """
     radii, step = [], size
+    # Between each two ends, the number of layers follows from the geometric series that begins with
+    # `step`; the layers are then stretched to fit.
     for start, end in pairwise(ends):
         ratio = 1.0 + (end - start) * (LAYER_GROWTH - 1.0) / step
         count = max(1, int(np.ceil(np.log(ratio) / np.log(LAYER_GROWTH) - 1e-9)))
@@ -54,7 +58,7 @@ def _layers(ends: list[float], size: float) -> list[Floats]:
 
 
 def _edges(eye: Pin, grid: MeshTri2) -> dict[str, np.ndarray[tuple[int, int], np.dtype[np.int64]]]:
-    """The edges (E, 3) of each surface, counter-clockwise: ends, then middle."""
+    """The edges (E, 3) of each surface, counter-clockwise: node numbers of ends, then middle."""
     facets = grid.boundary_facets()
     ends, middle = grid.facets[:, facets], grid.dofs.facet_dofs[0, facets]
     x, at = grid.doflocs, grid.doflocs[:, middle]

@@ -15,8 +15,8 @@ from pinbase.errors import CodedError
 from pinbase.platform import portable
 from pinbase.processes.interrupts import blocked
 
-# gmsh has one state for all threads of a process. So has the C library's rand(): whatever else
-# draws from it takes this lock, too, or meshes would differ from run to run.
+# gmsh has one state for all threads of a process. So has the C library's rand(), which gmsh uses:
+# any other code that draws from it must also take this lock, or meshes would differ between runs.
 GMSH_LOCK = threading.RLock()
 
 _open = False
@@ -35,10 +35,10 @@ class MeshError(CodedError, ArithmeticError):
 def gmsh_model(name: str) -> Iterator[Any]:
     """The gmsh module with an empty model for the pin `name`, finalised at the end of the block.
 
-    Other threads wait until then.
+    Other threads wait until the end of the block.
 
-    Raises: MeshError for everything that gmsh or OpenCASCADE cannot do; RuntimeError inside another
-    session of the same thread, which would end with this one.
+    Raises: MeshError for every failure of gmsh or OpenCASCADE; RuntimeError inside another session
+    of the same thread, which would end together with this one.
     """
     import gmsh
 
@@ -48,7 +48,7 @@ def gmsh_model(name: str) -> Iterator[Any]:
             raise RuntimeError(
                 f"gmsh session {name!r} was opened inside another one; close that first"
             )
-        with blocked(), signals_kept():  # for a moment gmsh has the system's own handlers
+        with blocked(), signals_kept():  # gmsh briefly installs the system's default handlers
             gmsh.initialize(readConfigFiles=False, interruptible=False)
         _open = True
         try:
@@ -71,7 +71,7 @@ def gmsh_model(name: str) -> Iterator[Any]:
 
 
 def failure(message: str, otherwise: str = "gmsh-failed") -> str:
-    """The code of an error of gmsh, which has only a message."""
+    """The code for an error of gmsh, from its message. otherwise: code for an unknown message."""
     return "out-of-memory" if "bad_alloc" in message else otherwise
 
 
@@ -83,7 +83,7 @@ def formula_size(gmsh: Any, formula: str) -> int:
 
 
 def set_size(gmsh: Any, fields: list[int]) -> None:
-    """Set the element size to the minimum of fields, and to nothing else."""
+    """Set the element size to the minimum of fields, without gmsh's other criteria."""
     field = gmsh.model.mesh.field
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", fields)
@@ -95,7 +95,7 @@ def set_size(gmsh: Any, fields: list[int]) -> None:
 
 @contextmanager
 def silence() -> Iterator[None]:
-    """Suppresses standard output, on which OpenCASCADE reports what it reads from a file."""
+    """Suppress standard output, on which OpenCASCADE reports its reading of a file."""
     sys.stdout.flush()
     stdout, null = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     try:
@@ -109,14 +109,14 @@ def silence() -> Iterator[None]:
 
 @contextmanager
 def signals_kept() -> Iterator[None]:
-    """Signals are handled afterwards as before."""
+    """Restore the handlers of signals at the end of the block."""
     with _by_python() if portable() else _by_sigaction():
         yield
 
 
 @contextmanager
 def _by_sigaction() -> Iterator[None]:
-    """Restore handlers in any thread, and also those that Python does not know (faulthandler's)."""
+    """Restore handlers in any thread, including those unknown to Python (faulthandler's)."""
     libc = ctypes.CDLL(None)
     kept = {each: ctypes.create_string_buffer(SIGACTION_BYTES) for each in SIGNALS}
     for each, handler in kept.items():
@@ -130,7 +130,7 @@ def _by_sigaction() -> Iterator[None]:
 
 @contextmanager
 def _by_python() -> Iterator[None]:
-    """Restore handlers in the main thread, the only one in which Python sets them."""
+    """Restore handlers in the main thread, the only thread in which Python can set them."""
     kept = {each: signal.getsignal(each) for each in SIGNALS}
     try:
         yield

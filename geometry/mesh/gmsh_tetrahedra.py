@@ -1,4 +1,4 @@
-"""Tetrahedra of gmsh: repair of distorted ones, and conversion with their named surfaces."""
+"""Repair of distorted tetrahedra of gmsh, and their conversion with named surfaces."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from geometry.mesh.gmsh_session import MeshError
 from geometry.mesh.tet10 import find_facets, quadratic
 from pinbase.arrays import Floats
 
-MIN_JACOBIAN_RATIO = 0.1  # min / max det J, which every element must exceed
-MAX_REPAIRS = 8  # times that an edge's curvature is halved
+MIN_JACOBIAN_RATIO = 0.1  # min / max det J that every element must exceed
+MAX_REPAIRS = 8  # largest number of times that an edge's curvature is halved
 TETRA10, TRIANGLE6 = 11, 9  # gmsh's element types
 TETRA4, TRIANGLE3 = 4, 2
 GMSH_TO_VTK_TETRA10 = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
-GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # of its nodes 4 to 9
+GMSH_EDGES = ((0, 1), (1, 2), (2, 0), (3, 0), (2, 3), (1, 3))  # edges with gmsh's nodes 4 to 9
 
 
 def _jacobians(gmsh: Any) -> Floats:
@@ -30,12 +30,12 @@ def _jacobians(gmsh: Any) -> Floats:
 
 
 def repair(gmsh: Any) -> tuple[float, int]:
-    """Straighten the edges of distorted elements, half-way at a time, until all are good.
+    """Halve the curvature of the edges of distorted elements, up to MAX_REPAIRS times.
 
     Returns the smallest ratio min/max det J and the number of elements changed. gmsh's optimiser
-    for curved elements is not used, since it can abort the whole process.
+    for curved elements is not used, because it can abort the whole process.
 
-    Raises: MeshError where there are no elements, for walls that are too thin for the mesh.
+    Raises: MeshError where there are no elements, because walls are too thin for the mesh.
     """
     changed: set[int] = set()
     ratios = _jacobians(gmsh)
@@ -75,7 +75,7 @@ def collect(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet1:
     cells = row[mesh.getElementsByType(tetra)[1]].reshape(-1, 4 if linear else 10)
     tetrahedra = quadratic(points, cells if linear else cells[:, GMSH_TO_VTK_TETRA10])
     corners = np.flatnonzero(tetrahedra.vertex >= 0)
-    tetrahedra.mesh.doflocs[:, : len(corners)] = points[corners].T  # to the last digit
+    tetrahedra.mesh.doflocs[:, : len(corners)] = points[corners].T  # exact to the last digit
     named = {}
     for name, faces in surfaces.items():
         nodes = np.concatenate([mesh.getElementsByType(triangle, face)[1] for face in faces])

@@ -1,8 +1,9 @@
 """A structured mesh of a body of revolution, or a sector of it, by 20-node hexahedra.
 
-The disc of the smallest radius is a square surrounded by a fan; rings between the radii of the
+The disc of the smallest radius is a square surrounded by a fan. Rings between the radii of the
 segments follow. Each layer along the axis has the cells that its segment fills. At a fillet, nodes
-around the sharp corner move outwards along the diagonal, until those on its sides lie on the arc.
+around the sharp corner move outwards along the diagonal, until the nodes on the corner's sides lie
+on the arc.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from skfem import ElementHexS2
 from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Ints
 
-SIDE_BULGE = 0.2  # outward bend of the square's sides, over its size
+SIDE_BULGE = 0.2  # outward bulge of the square's sides, over the size of the square
 SQUARE_SIZE_RATIO = 0.55  # size of the square over the radius of the disc
-# Depth of material behind a corner over the fillet's radius; with less, the corner stays sharp.
+# Least depth of material behind a corner over the fillet's radius; with less, it stays sharp.
 MIN_FILLET_DEPTH = 0.6
 FACE_CORNER_ORDER = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
-NODE_TOLERANCE = 1e-7  # of the smallest diameter: nodes closer than this are one
+NODE_TOLERANCE = 1e-7  # of the smallest diameter: nodes closer than this are merged
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class HexSize:
 
     around: number of cells in a quarter turn, even.
     along: largest length of a layer over the diameter; next to corners and ends of bands, layers
-    have half of the length unless a single one fills the space.
+    have half of this length, unless a single layer fills the space.
     """
 
     around: int = 4
@@ -45,8 +46,8 @@ class HexMesh:
     nodes: (N, 3) m.
     elements: (M, 20) node numbers in the order of skfem's ElementHexS2; its first axis is radial
     outside the square, the second runs around and the third along the pin.
-    outside: for each segment, the cells whose far side along the first axis lies on its outer
-    surface.
+    outside: for each segment, numbers of the cells whose far side along the first axis lies on its
+    outer surface.
     quarters: number of quarter turns meshed, from x towards y.
     """
 
@@ -60,7 +61,7 @@ class HexMesh:
 class _Patch:
     """Cells of a quarter disc between two radii.
 
-    position: (P, 20, 2) x and y of their nodes, m. inner, outer: radii, m.
+    position: (P, 20, 2) x and y of the nodes of P cells, m. inner, outer: the two radii, m.
     """
 
     position: Floats
@@ -69,7 +70,7 @@ class _Patch:
 
 
 def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
-    """The mesh of a pin, or of some quarters of it."""
+    """The mesh of a pin, or of the first `quarters` quarters of it, from x towards y."""
     patches = _patches(pin, fineness)
     layers = _layers(pin, fineness)
     segment = np.searchsorted(pin.stations[1:-1], layers.mean(axis=1), side="right")
@@ -100,7 +101,8 @@ def hexahedra(pin: Pin, fineness: HexSize, quarters: int = 4) -> HexMesh:
 def twenty() -> Ints:
     """Numbers (20,) of skfem's nodes in the order of other programs (VTK, CalculiX).
 
-    Theirs is: corners, then midside nodes of the edges below, above and between.
+    The order of these programs is: corners, then midside nodes of the edges below, above and
+    between.
     """
     skfem_nodes = [tuple(x) for x in np.asarray(ElementHexS2().doflocs).tolist()]
     edges = zip(FACE_CORNER_ORDER, (*FACE_CORNER_ORDER[1:], FACE_CORNER_ORDER[0]), strict=True)
@@ -115,7 +117,7 @@ def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
     """Nodes (N, 3) and elements (M, 20), from nodes (M, 20, 3) of each cell."""
     flat = points.reshape(-1, 3)
     key = np.round(flat / tolerance).astype(np.int64)
-    for axis in range(3):  # so that equal coordinates have equal keys although they round apart
+    for axis in range(3):  # equal coordinates that round to neighbouring keys get the same key
         order = np.argsort(key[:, axis], kind="stable")
         jump = np.diff(key[order, axis], prepend=key[order[0], axis]) > 2
         key[order, axis] = np.cumsum(jump)
@@ -127,8 +129,8 @@ def _merged(points: Floats, tolerance: float) -> tuple[Floats, Ints]:
 class Fillet:
     """A fillet at the corner of a shaft and a shoulder.
 
-    r, z: of the corner, m.
-    direction: of the shaft from the corner, 1 or -1 along z.
+    r, z: position of the corner, m.
+    direction: direction of the shaft from the corner, 1 or -1 along z.
     radius: m.
     depth: distance behind the corner within which nodes move, m.
     """
@@ -142,9 +144,9 @@ class Fillet:
     def moved(self, r: Floats, z: Floats) -> Floats:
         """Displacement of nodes at r and z, equal along both axes, m.
 
-        With a and b the distances from the corner along shaft and face, b - a does not change and
-        gives the place on the arc, from one tangent point (-radius) to the other (radius). Behind
-        the sides the displacement decreases linearly with depth.
+        Let a and b be the distances from the corner along shaft and face. Then b - a does not
+        change, and gives the place on the arc, from one tangent point (-radius) to the other
+        (radius). Behind the sides of the corner the displacement decreases linearly with depth.
         """
         a, b = (z - self.z) * self.direction, r - self.r
         place = np.clip((b - a) / self.radius, -1.0, 1.0)
@@ -155,7 +157,7 @@ class Fillet:
 
 
 def fillets_of(pin: Pin) -> list[Fillet]:
-    """The fillets of a pin behind whose corners there is enough material."""
+    """The fillets of a pin whose corners have enough material behind them."""
     fillets = []
     for i, (left, right) in enumerate(pairwise(pin.segments)):
         radius = pin.fillet_at(i)
@@ -171,7 +173,7 @@ def fillets_of(pin: Pin) -> list[Fillet]:
 
 
 def filleted(pin: Pin, points: Floats) -> Floats:
-    """Nodes (..., 3) of cells with fillets, from those with sharp corners."""
+    """Nodes (..., 3), m, moved onto fillets. points: nodes for sharp corners, m."""
     r, z = np.hypot(points[..., 0], points[..., 1]), points[..., 2]
     outwards, along = np.zeros_like(r), np.zeros_like(z)
     for fillet in fillets_of(pin):
@@ -182,7 +184,7 @@ def filleted(pin: Pin, points: Floats) -> Floats:
 
 
 def _layers(pin: Pin, fineness: HexSize) -> Floats:
-    """Bottom and top of the layers, (L, 2) m."""
+    """Bottom and top z of the layers, (L, 2) m."""
     ends = {*pin.stations, *(e for band in pin.bands for e in (band.z0, band.z1))}
     z: list[float] = []
     for low, high in pairwise(sorted(ends)):

@@ -1,4 +1,4 @@
-"""The mesh of a lug in its plane: quadratic triangles, of equal length around the bore."""
+"""The mesh of a lug in its plane by quadratic triangles, equally spaced around the bore."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints
 
 TRIANGLE6 = 9  # gmsh's element type
-GROWTH = 0.35  # of the element's size per distance from the bore
-MIN_WALL_ELEMENTS = 2.0  # through the thinnest wall
+GROWTH = 0.35  # increase of the element size per distance from the bore
+MIN_WALL_ELEMENTS = 2.0  # elements through the thinnest wall
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class LugMesh:
 
     nodes: (N, 2), corners first.
     elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02.
-    in_bushing: (M,) whether an element is of the bushing.
+    in_bushing: (M,) whether an element belongs to the bushing.
     """
 
     nodes: Floats
@@ -34,9 +34,9 @@ class LugMesh:
 def lug_mesh(outline: LugOutline, around: int) -> LugMesh:
     """The mesh of a lug.
 
-    around: elements around the bore, a multiple of 4.
+    around: number of elements around the bore, a multiple of 4.
 
-    Raises: MeshError.
+    Raises: MeshError where gmsh fails.
     """
     outline = outline.in_radii()
     with gmsh_model("lug") as gmsh:
@@ -68,7 +68,7 @@ def _circle(geo: Any, middle: int, x: float, radius: float) -> list[int]:
 
 
 def _outside(geo: Any, outline: LugOutline) -> list[int]:
-    """The outer curves, counter-clockwise from the lower end of the shank on."""
+    """The outer curves, counter-clockwise from the lower end of the shank."""
     half, length = outline.width / 2.0, outline.length
     if outline.shape == "square":
         end = -outline.end
@@ -88,9 +88,9 @@ def _outside(geo: Any, outline: LugOutline) -> list[int]:
 
 
 def _size(gmsh: Any, outline: LugOutline, around: int) -> None:
-    """Set equal elements around the bore and an interface, growing away from these."""
+    """Set equal elements around the bore and an interface; sizes grow away from these."""
     holes = [1.0] if outline.interface is None else [1.0, outline.interface / 2.0]
-    for _, curve in gmsh.model.getEntities(1)[: 4 * len(holes)]:  # quarters, drawn first
+    for _, curve in gmsh.model.getEntities(1)[: 4 * len(holes)]:  # quarters of circles come first
         gmsh.model.mesh.setTransfiniteCurve(curve, around // 4 + 1)
     away = ",".join(f"Fabs(Sqrt(x*x+y*y)-{r!r})" for r in holes)
     nearest = f"Min({away})" if len(holes) > 1 else away
@@ -99,7 +99,7 @@ def _size(gmsh: Any, outline: LugOutline, around: int) -> None:
 
 
 def _largest(outline: LugOutline) -> float:
-    """The largest size of an element, so that several fit in the thinnest wall of the lug."""
+    """The largest element size, for MIN_WALL_ELEMENTS in the thinnest wall of the lug."""
     outside = outline.head / 2.0 - abs(outline.centre)
     if outline.shape == "square":
         outside = min(outline.end, outline.width / 2.0)

@@ -1,10 +1,10 @@
-"""How the nodes on the outline of a section's mesh move when a dimension of the pin changes.
+"""Motion of the nodes on the outline of a section's mesh when a dimension of the pin changes.
 
-Every node keeps its place on its own edge: the fraction of a straight edge's length, of an arc's
-angle. Where a straight edge is cut at some distance from its end (the reach of an excluded zone, in
-proportion to the radius there), the node on the cut stays on it, and others keep their fraction
-between cuts. Edges move with the pin's own outline, so that all this is exact for any pin that has
-the same edges; the rate is by differences of fourth order, to 1e-10.
+Every node keeps its place on its own edge: the fraction of a straight edge's length, or of an arc's
+angle. A straight edge may be cut at some distance from its end (the reach of an excluded zone, in
+proportion to the radius there). Then the node at the cut stays at the cut, and other nodes keep
+their fraction between cuts. Edges move with the pin's own outline, so the motion is exact for any
+pin with the same edges. Rates come from differences of fourth order, accurate to 1e-10.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ, Arc, Edge, meridian
 from pinbase.arrays import Floats, Ints
 
-RELATIVE_STEPS = 1e-4, 1e-6  # of a dimension: the next one where the first gives another shape
-MIN_CUT_POSITION, MAX_CUT_POSITION = 0.001, 0.999  # of an edge, as gmsh is given them
+RELATIVE_STEPS = 1e-4, 1e-6  # of a dimension; the second if the first gives another shape
+MIN_CUT_POSITION, MAX_CUT_POSITION = 0.001, 0.999  # of an edge, the same as in the mesh of gmsh
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def rate(at: Callable[[float], Floats], step: float) -> Floats:
 
 
 def rate_of(values: Sequence[Floats], step: float) -> Floats:
-    """The same of values at the places."""
+    """Derivative at 0 from the values at DIFFERENCE_STEPS times `step`."""
     first, second, third, fourth = values
     return np.asarray((8.0 * (third - second) - (fourth - first)) / (12.0 * step))
 
@@ -56,9 +56,9 @@ def rate_of(values: Sequence[Floats], step: float) -> Floats:
 class NodeMotion:
     """The motion of the outline's nodes with a dimension.
 
-    key: of the dimension.
-    velocity: (B, 2) m per m.
-    pins: those whose dimension is larger by DIFFERENCE_STEPS times `step`, m.
+    key: key of the dimension.
+    velocity: (B, 2) movement of the nodes per change of the dimension, m per m.
+    pins: pins whose dimension is larger by DIFFERENCE_STEPS times `step` (m).
     """
 
     key: str
@@ -68,7 +68,7 @@ class NodeMotion:
 
 
 class OutlineNodes:
-    """The nodes on a mesh's outline, the axis included. rows: (B,) their numbers."""
+    """The B nodes on a mesh's outline, including the axis. rows: (B,) numbers of the nodes."""
 
     def __init__(self, mesh: MeridianMesh, pin: Pin, reaches: Iterable[Reach] = ()) -> None:
         self._shape = _shape(meridian(pin))
@@ -87,7 +87,7 @@ class OutlineNodes:
     def at(self, pin: Pin) -> Floats:
         """The places of the nodes, (B, 2) m, on a pin with the same edges.
 
-        Raises: OtherShapeError.
+        Raises: OtherShapeError for a pin with other edges.
         """
         outline = meridian(pin)
         if _shape(outline) != self._shape:
@@ -97,7 +97,7 @@ class OutlineNodes:
     def motion(self, dimension: Dimension) -> NodeMotion:
         """The motion of every node with a dimension.
 
-        Raises: OtherShapeError where there is no such pin on both sides of it.
+        Raises: OtherShapeError where a slightly larger or smaller dimension gives other edges.
         """
         for part in RELATIVE_STEPS:
             step = part * dimension.value
@@ -111,12 +111,19 @@ class OutlineNodes:
         raise OtherShapeError
 
     def among(self, key: str, pins: tuple[Pin, ...], step: float) -> NodeMotion:
-        """The motion from pins at DIFFERENCE_STEPS times a step, m. Raises: OtherShapeError."""
+        """The motion of every node, from pins whose dimension differs by steps.
+
+        key, pins, step: as for `NodeMotion`.
+
+        Raises: OtherShapeError for a pin with other edges.
+        """
         return NodeMotion(key, rate_of([self.at(pin) for pin in pins], step), pins, step)
 
     def _cuts(self, edge: Edge) -> list[tuple[int, float]]:
-        """The cuts of a straight edge, in their order along it: the end (0, 1) from which each is
-        measured, and its distance from there over the radius there.
+        """The cuts of a straight edge, in their order along it.
+
+        Each has the end (0 or 1) from which it is measured, and its distance from this end over the
+        radius at this end.
         """
         if isinstance(edge, Arc):
             return []
@@ -137,7 +144,7 @@ def _cut_at(edge: Edge, end: int, ratio: float) -> float:
 
 
 class _Place:
-    """Nodes on one edge of the outline, by its number."""
+    """Nodes on one edge of the outline. edge: number of the edge. on: the edge."""
 
     def __init__(self, edge: int, cuts: list[tuple[int, float]], on: Edge, nodes: Floats) -> None:
         self.edge, self._cuts = edge, cuts
@@ -158,7 +165,7 @@ class _Place:
         return np.array([0.0, *(_cut_at(edge, end, ratio) for end, ratio in self._cuts), 1.0])
 
     def at(self, edge: Edge) -> Floats:
-        """The places of the nodes on the edge of another shape, (.., 2) m."""
+        """The places of the nodes, (.., 2) m, on the same edge of another shape."""
         start = np.array(edge.start)
         if isinstance(edge, Arc):
             angle, (x, y) = self._part * edge.turn, start - edge.centre
@@ -175,7 +182,10 @@ def _shape(outline: tuple[Edge, ...]) -> list[tuple[str | None, bool]]:
 
 
 def _on(edge: Edge, nodes: Floats, named: Ints) -> Ints:
-    """The nodes of its name that are on an edge: all, unless others have that name too."""
+    """The nodes on an edge, among the nodes with its name.
+
+    All of these are on the edge, except on the axis, of which several edges may be parts.
+    """
     if edge.name:
         return named
     z = nodes[named, 1]

@@ -1,7 +1,7 @@
-"""Validity of elements: detection of inverted ones, and of ones folded over their neighbours.
+"""Detection of invalid elements, which are inverted or folded over their neighbours.
 
-Assembly uses the magnitude of det J, not its sign, so that an invalid mesh would yield numbers all
-the same.
+Assembly uses the magnitude of det J, not its sign, so that an invalid mesh would still yield
+numbers.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from skfem import MeshTet2
 from geometry.mesh.tet10 import Quadratic
 from pinbase.arrays import Floats, Ints
 
-JACOBIAN_DEGREE = 3  # of det J as a polynomial, for a quadratic tetrahedron
-DENSE_EDGE_POINTS = 12  # intervals along an edge, where Bernstein coefficients are inconclusive
+JACOBIAN_DEGREE = 3  # degree of the polynomial det J of a quadratic tetrahedron
+# Intervals along an edge of the lattice used where Bernstein coefficients are inconclusive.
+DENSE_EDGE_POINTS = 12
 
 
 def _lattice(order: int) -> Ints:
@@ -33,11 +34,11 @@ def _bernstein(at: Floats) -> Floats:
 
 
 def distortion(tetrahedra: Quadratic) -> Floats:
-    """Smallest over largest det J of every element, (M,), at most 0 where it is inverted.
+    """Ratio of smallest to largest det J of every element, (M,), at most 0 for inverted ones.
 
-    Positive Bernstein coefficients prove that det J is positive throughout; where one is not, det J
-    is evaluated on a dense lattice. (The ten nodes are not enough: of curved elements with det J
-    positive there, one in thirty was inverted elsewhere.)
+    Positive Bernstein coefficients prove that det J is positive throughout. Where a coefficient is
+    not positive, det J is evaluated on a dense lattice. (Its values at the ten nodes are not
+    enough: of curved elements with positive values there, one in thirty was inverted elsewhere.)
     """
     points = _lattice(JACOBIAN_DEGREE) / JACOBIAN_DEGREE
     det = tetrahedra.determinants(points[:, 1:])
@@ -56,7 +57,7 @@ def distortion(tetrahedra: Quadratic) -> Floats:
 
 
 def _ratio(det: Floats) -> Floats:
-    """Smallest over largest value of each row; NaN for a flat element, whose det J is zero."""
+    """Ratio of smallest to largest value of each row; NaN for a flat element, with det J zero."""
     with np.errstate(invalid="ignore"):
         return np.asarray(det.min(axis=1) / det.max(axis=1))
 
@@ -64,7 +65,7 @@ def _ratio(det: Floats) -> Floats:
 def folded(mesh: MeshTet2) -> int:
     """Number of inner facets whose two elements lie on the same side, so that they overlap.
 
-    Sides are taken as plane; the numbering of an element's nodes does not matter.
+    Facets are treated as plane. The order of an element's nodes does not matter.
     """
     inner = np.flatnonzero(mesh.f2t[1] >= 0)
     facets, x = mesh.facets[:, inner], mesh.p.T

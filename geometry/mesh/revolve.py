@@ -18,7 +18,8 @@ def draw(
 ) -> list[list[int]]:
     """Tags of the curves of every edge, drawn in a geometry kernel of gmsh.
 
-    cuts: gives the points at which a straight edge is divided.
+    add_point: function that draws a point (r, z) and returns its tag.
+    cuts: function that returns the points at which a straight edge is divided.
     """
     points: dict[RZ, int] = {}
 
@@ -39,9 +40,9 @@ def draw(
 
 
 def revolve(gmsh: Any, outline: tuple[Edge, ...], angle: float = 2.0 * math.pi) -> tuple[int, int]:
-    """Make the body of revolution of a closed outline about the z-axis; returns its entity.
+    """Make the body of revolution of a closed outline about the z-axis; return its entity.
 
-    angle: of revolution, from the plane of x and z on, rad.
+    angle: angle of revolution, from the x-z plane, rad.
     """
     occ = gmsh.model.occ
     curves = draw(occ, outline, lambda rz: occ.addPoint(rz[0], 0.0, rz[1]))

@@ -1,7 +1,7 @@
 """The unit of length of a pin in gmsh and OpenCASCADE, whose tolerances are lengths.
 
-They merge points closer than 1e-7, whatever the unit: nothing would be left of a pin of one
-micrometre. The unit is a power of two, which changes no digit of any dimension.
+Both merge points closer than 1e-7, in whatever unit, so that nothing would be left of a pin of one
+micrometre. The unit is a power of two, so that scaling changes no digit of any dimension.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from geometry.shape.features import Cut
 from geometry.shape.pin import Pin
 from geometry.shape.recess import Recess
 
-MIN_DIMENSION = 1e-4  # m; far enough above their tolerances
-MAX_DIAMETER = 100.0  # m; up to which they compute volumes to 1e-6
+MIN_DIMENSION = 1e-4  # m; far enough above the tolerances of gmsh and OpenCASCADE
+MAX_DIAMETER = 100.0  # m; up to this size they compute volumes to 1e-6
 
 
 def unit_of(pin: Pin) -> float:
@@ -24,9 +24,11 @@ def unit_of(pin: Pin) -> float:
 
 
 def unit_of_solid(pin: Pin, cuts: Iterable[Cut] = ()) -> float:
-    """The unit (m) for the solid of a pin with cuts: 1 where its dimensions suit metres, else
-    `unit_of`, as for rounded mouths, of which OpenCASCADE makes every third in metres. That of a
-    recess is its solid's.
+    """The unit (m) for the solid of a pin with cuts.
+
+    It is 1 where all dimensions suit metres, otherwise `unit_of`. Rounded mouths always use
+    `unit_of`, because in metres OpenCASCADE succeeds only for every third. A pin with a recess uses
+    the unit of the recess's solid.
     """
     small = [x for s in pin.segments for x in (s.length, *s.bores, *(w / 2 for w in s.walls))]
     small += [rounding.radius for rounding in pin.roundings]

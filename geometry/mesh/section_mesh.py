@@ -1,4 +1,4 @@
-"""The mesh of a pin's meridian section by quadratic curved triangles, with its outline named."""
+"""The mesh of a pin's meridian section by quadratic curved triangles, with a named outline."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ __all__ = ["MeridianMesh", "SectionSize", "Spot", "meridian_mesh"]
 
 TRIANGLE3, LINE2 = 2, 1  # gmsh's element types
 MAX_TRIANGLES = 2e5
-UNBOUNDED_LENGTH = 1e9  # longer than any pin in a unit in which its smallest diameter is 1
-MIN_FILLET_RATIO = 1e-8  # over the adjacent diameter: gmsh hangs at 1e-13
+UNBOUNDED_LENGTH = 1e9  # larger than any pin, in a unit in which its smallest diameter is about 1
+MIN_FILLET_RATIO = 1e-8  # least radius over the adjacent diameter; gmsh hangs at 1e-13
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class MeridianMesh:
 
     nodes: (N, 2) r and z, m; corner nodes, then midside nodes.
     elements: (M, 6) node numbers: corners, then the middles of sides 01, 12, 02.
-    edges: by surface name, (E, 3) node numbers of the edges there, in no order: ends, then middle.
+    edges: by surface name, (E, 3) node numbers of its edges (ends, then middle), in any order.
     axis: numbers of the nodes at r = 0.
     """
 
@@ -48,7 +48,7 @@ class MeridianMesh:
 
     @classmethod
     def of(cls, mesh: MeshTri2, edges: dict[str, Ints], axis: Ints) -> MeridianMesh:
-        """The mesh from one of scikit-fem. edges, axis: with its node numbers."""
+        """The mesh from a mesh of scikit-fem. edges, axis: in the node numbers of that mesh."""
         nodes = np.ascontiguousarray(mesh.doflocs.T)
         elements = np.ascontiguousarray(mesh.dofs.element_dofs.T).astype(np.int64)
         return cls(nodes, elements, edges, axis)
@@ -87,7 +87,7 @@ def meridian_mesh(
     size: fineness away from spots.
     spots: points of the outline at which the mesh is finer.
     finer: further gradings.
-    quiet: numbers of corners at whose fillets stress is low, so that they may be meshed coarsely.
+    quiet: numbers of corners whose fillets have low stress, so that they may be meshed coarsely.
 
     Raises: MeshError when the mesh would be too large or a fillet is too small.
     """
@@ -98,15 +98,15 @@ def meridian_mesh(
     outline = meridian(pin)
     with gmsh_model(pin.name) as gmsh:
         _draw(gmsh, outline, spots)
-        more = (grade.scaled(1.0 / unit) for grade in finer)
+        further = (grade.scaled(1.0 / unit) for grade in finer)
         largest = _stretch_sizes(gmsh, stretches(pin, size), size.growth)
-        _set_sizes(gmsh, largest, [*grades(pin, size, spots, quiet), *more])
+        _set_sizes(gmsh, largest, [*grades(pin, size, spots, quiet), *further])
         gmsh.model.mesh.generate(2)
         return _collect(gmsh, unit, outline)
 
 
 def _require_reasonable(pin: Pin, size: SectionSize) -> None:
-    """Raises: MeshError when the mesh would be too large or a fillet is too small."""
+    """Raise MeshError when the mesh would be too large or a fillet is too small."""
     if (count := triangles(pin, size)) > MAX_TRIANGLES:
         raise MeshError(
             f"pin {pin.name}: the mesh would need {count:.1e} elements, of which "
@@ -127,7 +127,7 @@ def _require_reasonable(pin: Pin, size: SectionSize) -> None:
 
 
 def _draw(gmsh: Any, outline: tuple[Edge, ...], spots: tuple[Spot, ...]) -> None:
-    """Draw the outline, its edges divided at the reach of spots at their ends."""
+    """Draw the outline, with edges divided at the reach of spots at their ends."""
     geo = gmsh.model.geo
     curves = draw(geo, outline, lambda rz: geo.addPoint(*rz, 0.0), lambda e: _cuts(e, spots))
     geo.addPlaneSurface([geo.addCurveLoop([curve for edge in curves for curve in edge])])
@@ -152,7 +152,7 @@ def _cuts(edge: Edge, spots: tuple[Spot, ...]) -> list[RZ]:
 
 
 def _stretch_sizes(gmsh: Any, parts: list[Stretch], growth: float) -> tuple[float, list[int]]:
-    """The largest element size, and size fields for the stretches that have a smaller one."""
+    """The largest element size, and size fields for the stretches with a smaller element size."""
     far = max(part.near for part in parts)
     fields: list[int] = []
     for part in parts:
@@ -174,7 +174,7 @@ def _field(gmsh: Any, kind: str, numbers: dict[str, float]) -> int:
 def _set_sizes(gmsh: Any, largest: tuple[float, list[int]], gradings: Iterable[Grade]) -> None:
     """Set the element size to the minimum of gradings and of the fields of stretches.
 
-    largest: the largest element size, and the fields, as of `_stretch_sizes`.
+    largest: largest element size, and the fields, from `_stretch_sizes`.
     """
     field, geo = gmsh.model.mesh.field, gmsh.model.geo
     far, fields = largest
@@ -189,13 +189,13 @@ def _set_sizes(gmsh: Any, largest: tuple[float, list[int]], gradings: Iterable[G
     geo.synchronize()
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
-    # Precision of the size along curves: gmsh's default of 1e-9 takes as long as all the rest, and
-    # gives the same nodes.
+    # Precision of the size along curves: gmsh's default of 1e-9 takes as long as everything else,
+    # and gives the same nodes.
     gmsh.option.setNumber("Mesh.LcIntegrationPrecision", 1e-4)
 
 
 def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
-    """The mesh from gmsh's straight triangles, with midside nodes added, on arcs where these are.
+    """The mesh from gmsh's straight triangles, with midside nodes added (on arcs, on the arc).
 
     gmsh's lines are in the order in which curves were drawn, once around the outline.
     """
@@ -219,7 +219,7 @@ def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
     middles = (points[low] + points[high]) / 2.0
     elements = np.hstack([corners, count + np.searchsorted(sides, key)])
     halves = count + np.searchsorted(sides, _sides(lines, count))
-    # The lines of each edge of the outline run from its start to the start of the next.
+    # The lines of each edge of the outline run from its start to the start of the next edge.
     at = {(r, z): k for k, (r, z) in enumerate(points[lines[:, 0]].tolist())}
     ends = [*(at[e.start] for e in outline), len(lines)]
     edges: dict[str, list[Ints]] = {}
@@ -242,5 +242,5 @@ def _collect(gmsh: Any, unit: float, outline: tuple[Edge, ...]) -> MeridianMesh:
 
 
 def _sides(ends: Ints, count: int) -> Ints:
-    """A number for each pair (.., 2) of nodes, whatever their order. count: number of nodes."""
+    """A number for each pair (.., 2) of nodes, in either order. count: number of nodes."""
     return np.asarray(ends.min(axis=-1) * count + ends.max(axis=-1))

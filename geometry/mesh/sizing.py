@@ -1,4 +1,4 @@
-"""Element sizes of a section's mesh, by position: the minimum of several gradings."""
+"""Element sizes of a section's mesh, by position, as the minimum of several gradings."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from geometry.shape.pin import Pin
 from geometry.shape.profile import RZ
 
-# `arc` and `growth` as of SectionSize, at fillets where stress is low.
+# `arc` and `growth` of SectionSize for fillets where stress is low.
 LOW_STRESS_ARC, LOW_STRESS_GROWTH = 1.5, 1.0
 # Elements along a rounded edge, where stress is low, over those along a fillet.
 ROUNDED_EDGE_ARC_RATIO = 0.4
-TRIANGLE_AREA_RATIO = 0.43  # area of a triangle over its side squared
-MAX_UNIFORM_TRIANGLES = 1e4  # of a first mesh with one size for all parts
+TRIANGLE_AREA_RATIO = 0.43  # area of a triangle over the square of its side
+MAX_UNIFORM_TRIANGLES = 1e4  # largest number in a first mesh with one size for all parts
 SPOT_GROWTH = 0.6  # increase of the element size per distance from a spot, on all meshes
 
 
@@ -25,7 +25,7 @@ class SectionSize:
 
     across: number of elements over the thinnest shaft or wall.
     arc: number of elements along a fillet's quarter circle.
-    growth: increase of the element size per distance from where it is small.
+    growth: increase of the element size per distance from points where it is small.
     """
 
     across: float = 2.0
@@ -41,8 +41,8 @@ class SectionSize:
 class Spot:
     """A point of the outline at which elements are small.
 
-    r, z: m.
-    size: element size there, m.
+    r, z: position, m.
+    size: element size at the spot, m.
     reach: distance within which elements grow as fast as on the coarsest mesh, m.
     """
 
@@ -60,9 +60,9 @@ class Spot:
 class Grade:
     """A grading of element size around points.
 
-    points: r and z, m.
+    points: positions (r, z), m.
     near: element size within the distance `flat` of a point, both in m.
-    growth: increase of the element size per distance from there.
+    growth: increase of the element size per distance beyond `flat`.
     """
 
     points: tuple[RZ, ...]
@@ -93,8 +93,8 @@ class Stretch:
 def stretches(pin: Pin, size: SectionSize) -> list[Stretch]:
     """Element sizes along a pin.
 
-    They follow the thinnest part of the pin, unless that takes too many elements; then each part
-    has the size that follows from its own thickness.
+    There is one size, from the thinnest part of the pin. If it would need too many elements, each
+    part has a size of its own, from its own thickness.
     """
     parts: list[Stretch] = []
     triangles, first = 0.0, largest(pin, SectionSize())
@@ -124,7 +124,7 @@ def triangles(pin: Pin, size: SectionSize) -> float:
 
 
 def largest(pin: Pin, size: SectionSize) -> float:
-    """Element size away from small features, by the smallest diameter less bore, m."""
+    """Element size away from small features, m, from the smallest diameter less bore."""
     return min(min(s.walls) for s in pin.segments) / size.across
 
 
@@ -155,7 +155,8 @@ def grades(
         by_size.setdefault((s.size, s.reach), []).append((s.r, s.z))
     for (near, reach), places in by_size.items():
         points = tuple(places)
-        # A very small spot grows as on the coarsest mesh up to its reach, and from there as usual.
+        # Around a very small spot, elements grow as on the coarsest mesh up to its reach, and from
+        # there as usual.
         steep = near < size.growth * reach
         out.append(Grade(points, near, 0.0, SPOT_GROWTH if steep else size.growth))
         if steep:

@@ -31,9 +31,9 @@ class MeshSize:
     """The fineness of a solid's mesh.
 
     across: number of elements over the smallest diameter.
-    corner: fineness at sharp corners and edges of bands, relative to that.
+    corner: fineness at sharp corners and edges of bands, relative to `across`.
     arc: number of elements along a fillet's quarter circle.
-    growth: increase of the element size per distance from there.
+    growth: increase of the element size per distance from such features.
     """
 
     across: float = 4.0
@@ -50,10 +50,10 @@ class MeshSize:
 class SolidMesh:
     """A mesh of tetrahedra, and its quality.
 
-    mesh: coordinates in m, quadratic unless others were requested (geometry.mesh.elements); its
-    `boundaries` map surface names to facets.
+    mesh: coordinates in m; elements are quadratic unless another kind was requested
+    (geometry.mesh.elements); `boundaries` map surface names to facets.
     jacobian: smallest ratio min/max det J of all elements.
-    repaired: number of elements whose edges were straightened to reach it.
+    repaired: number of elements whose edges were straightened to reach this ratio.
     """
 
     mesh: MeshTet1
@@ -76,12 +76,12 @@ def solid_mesh(
 ) -> SolidMesh:
     """The mesh of a pin.
 
-    edges: z of further circles on the surface at which it is refined, m.
+    edges: z of further circles on the surface at which the mesh is refined, m.
     element: kind of tetrahedra.
-    most: unknowns of quadratic ones that are allowed.
+    most: largest number of unknowns of quadratic tetrahedra that is allowed.
 
     Raises: MeshError when elements are still inverted or slivers after repair and on finer meshes,
-    or when there would be far too many.
+    or when there would be far too many elements.
     """
     cause = "a fillet or bore that is very small compared with its neighbours"
     return sound_mesh(lambda finer: _mesh(pin, finer, edges, element, most), size, pin.name, cause)
@@ -90,9 +90,9 @@ def solid_mesh(
 def sound_mesh(
     make: Callable[[MeshSize], SolidMesh], size: MeshSize, pin: str, cause: str
 ) -> SolidMesh:
-    """The first mesh without inverted or sliver elements, of this size and two finer ones.
+    """The first mesh without inverted or sliver elements, of this size or two finer sizes.
 
-    make: generates a mesh of a size.
+    make: function that generates a mesh of a given size.
     pin, cause: name of the pin and possible cause, for the message.
 
     Raises: MeshError if there is none.
@@ -114,24 +114,24 @@ def sound_mesh(
 def _mesh(
     pin: Pin | CutPin, size: MeshSize, edges: tuple[float, ...], element: Element, most: float
 ) -> SolidMesh:
-    """A mesh of a pin of this size, after repair; arguments as of `solid_mesh`."""
+    """A mesh of a pin of this size, after repair; arguments as for `solid_mesh`."""
     profile = pin.profile
     _require_reasonable(profile, size)
     unit = unit_of_solid(profile, pin.cuts.values())
     pin, profile = pin.scaled(1.0 / unit), profile.scaled(1.0 / unit)
     edges = tuple(z / unit for z in edges)
     with gmsh_model(pin.name) as gmsh:
-        more: list[int] = []
+        cut_fields: list[int] = []
         if pin.cuts:
             cut_solid(gmsh, profile, pin.cuts)
             parts = named_parts(gmsh, profile, pin.cuts)
             surfaces, far = name_faces(parts, pin.cuts), _far(profile, size)
-            more = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
+            cut_fields = grade(gmsh, profile, pin.cuts, parts, far, size.across, size.growth)
         else:
             outline = meridian(profile)
             revolve(gmsh, outline)
             surfaces = _name_surfaces(gmsh, profile, outline)
-        set_sizes(gmsh, profile, size, edges, more)
+        set_sizes(gmsh, profile, size, edges, cut_fields)
         if element != "linear":
             require_few(gmsh, pin.name, most)
         gmsh.model.mesh.generate(3)
@@ -144,7 +144,7 @@ def _mesh(
 
 
 def _require_reasonable(pin: Pin, size: MeshSize) -> None:
-    """Raises: MeshError when even the coarse part of the mesh would be too large."""
+    """Raise MeshError when even the coarse part of the mesh would be too large."""
     elements = pin.volume / (0.12 * _far(pin, size) ** 3)  # 0.12 h^3: a regular tetrahedron
     if elements > MAX_ELEMENTS:
         raise MeshError(
@@ -156,7 +156,7 @@ def _require_reasonable(pin: Pin, size: MeshSize) -> None:
 
 
 def _far(pin: Pin, size: MeshSize) -> float:
-    """Element size away from all features, by the thinnest shaft or wall, m."""
+    """Element size away from all features, m, from the thinnest shaft or wall."""
     walls = [wall / 2 for s in pin.segments if any(s.bores) for wall in s.walls]
     return min([pin.smallest_diameter / size.across, *walls])
 
@@ -190,9 +190,9 @@ def _name_surfaces(gmsh: Any, pin: Pin, outline: tuple[Edge, ...]) -> dict[str, 
 
 
 def set_sizes(
-    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], more: list[int]
+    gmsh: Any, pin: Pin, size: MeshSize, edges: tuple[float, ...], fields: list[int]
 ) -> None:
-    """Set the element size to the minimum of gradings around all features, and of `more` fields.
+    """Set the element size to the minimum of gradings around all features and of `fields`.
 
     Features are sharp corners, circles at z = `edges` (m), roundings and bores.
     """
@@ -205,8 +205,8 @@ def set_sizes(
     for rounding in pin.roundings:
         arc = min(far, rounding.radius * math.pi / 2 / size.arc)
         circles.append((*rounding.at, arc, 1.3 * rounding.reach))
-    # Around a circle: h within the distance `flat`, then growing; d + |d| is zero inside.
-    tags = list(more)
+    # Around a circle the size is h within the distance `flat`, then grows: d + |d| is zero inside.
+    tags = list(fields)
     for r, z, h, flat in dict.fromkeys(circles):
         d = f"Sqrt((Sqrt(x*x+y*y)-{r!r})^2+(z-{z!r})^2)-{flat!r}"
         tags.append(formula_size(gmsh, f"{h!r}+{size.growth / 2!r}*(({d})+Fabs({d}))"))

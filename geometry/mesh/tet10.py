@@ -11,7 +11,8 @@ from pinbase.arrays import Floats, Ints
 
 # The edges of nodes 4 to 9, in the order of VTK and scikit-fem.
 TET10_EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))
-# Four at the corners, and the octahedron between them, divided at its diagonal from edge 02 to 13.
+# Four children at the corners, and four from the octahedron between them, which is divided along
+# its diagonal from edge 02 to edge 13.
 CHILD_TETRAHEDRA = np.array([
     (0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3),
     (6, 8, 4, 5), (6, 8, 5, 9), (6, 8, 9, 7), (6, 8, 7, 4),
@@ -69,7 +70,7 @@ def find_facets(tetrahedra: Quadratic, triangles: Ints) -> Ints:
 
 
 def refined(mesh: MeshTet2) -> MeshTet2:
-    """The mesh with every element divided in eight on the same curved shape.
+    """The mesh with every element divided into eight on the same curved shape.
 
     Boundaries keep their names.
     """

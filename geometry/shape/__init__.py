@@ -1,1 +1,1 @@
-"""The shape of a pin: its segments, bands, fillets, cuts, outline and corners."""
+"""The shape of a pin, with its segments, bands, fillets, cuts, outline and corners."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pinbase.errors import CodedError
 
 END_FACES = ("start", "end")
-SHOULDER = "shoulder "  # before the number of the segment that ends there: the face of a shoulder
+SHOULDER = "shoulder "  # a shoulder's face has this name and the number of the segment before it
 
 
 class GeometryError(CodedError, ValueError):
@@ -19,8 +19,8 @@ class GeometryError(CodedError, ValueError):
 class Band:
     """The outer surface of a segment between its fillets.
 
-    z0, z1: m.
-    radius: m; for a cone, on which no link can bear, the mean.
+    z0, z1: axial positions of its ends, m.
+    radius: m; for a cone, on which no link can bear, the mean radius.
     """
 
     name: str

@@ -1,12 +1,12 @@
-"""The place of cuts along a pin's bands, known before anything is computed."""
+"""Positions of cuts relative to a pin's bands, which are known before any computation."""
 
 from __future__ import annotations
 
 from geometry.shape.features import Cut
 from geometry.shape.pin import Pin
 
-# Least distance of a cut from the ends of its band, of the cut's size (at most the pin's diameter);
-# chosen by judgement.
+# Least distance of a cut from the ends of its band, as a fraction of the cut's size (or of the
+# pin's smallest diameter, if that is less); chosen by judgement.
 MIN_END_DISTANCE = 0.1
 
 

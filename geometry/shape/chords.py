@@ -12,9 +12,9 @@ from pinbase.arrays import Floats, Mask
 def needed(at: Floats, values: Floats, allowed: Floats, fixed: Mask) -> Mask:
     """Mask (N,) of the points to keep, so that straight lines between them approximate the curve.
 
-    at: (N,) position along the curve.
-    values, allowed: (N, V) values at the points, and the deviation that is allowed of each.
-    fixed: (N,) points that are kept in any case, in addition to the first and the last.
+    at: (N,) positions along the curve.
+    values, allowed: (N, V) values at the points, and the allowed deviation of each value.
+    fixed: (N,) mask of points that are always kept, in addition to the first and the last.
 
     Source: Ramer (1972), Douglas and Peucker (1973).
     """

@@ -10,7 +10,7 @@ from geometry.shape.pin import Pin
 from geometry.shape.polygon import RZ, cross
 from geometry.shape.profile import Arc, Edge, meridian
 
-# Of the smallest diameter: round-off leaves less than this of a shaft that fillets take whole.
+# Relative to the smallest diameter: an edge that fillets consume keeps less than this by round-off.
 MIN_SHAFT_LENGTH = 1e-9
 
 
@@ -18,8 +18,8 @@ MIN_SHAFT_LENGTH = 1e-9
 class Vertex:
     """A circle at (r, z), m, where two surfaces meet.
 
-    angle: of the material between them, rad; below pi at a rim, pi where they join smoothly, above
-    pi at an inner corner.
+    angle: angle of the material between the surfaces, rad; below pi at a rim, pi where they join
+    smoothly, above pi at an inner corner.
     between: names of the two surfaces, counter-clockwise in (r, z).
     """
 

@@ -1,7 +1,7 @@
-"""Edges of cuts in a drawing: the view of a pin from y, with x upwards and z to the right.
+"""Edges of cuts in a drawing, the view of a pin from y, with x upwards and z to the right.
 
-Edges on the side of y are visible, those inside or behind are hidden. Notches are the rectangles by
-which the pin's silhouette, or its section with the plane y = 0, is cut back.
+Edges on the side of y are visible; edges inside or behind the pin are hidden. Notches are the
+rectangles that cuts remove from the pin's silhouette, or from its section with the plane y = 0.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from geometry.shape.recess import Recess
 from pinbase.arrays import Floats
 
 CIRCLE_ANGLES = np.linspace(0.0, 2.0 * np.pi, 73)
-UPRIGHT_TOLERANCE = 1e-3  # rad: a cut milled from this close to x is seen from its side
-FRONT_TOLERANCE = 1e-9  # of the pin's radius: points this little behind y = 0 are in front
+UPRIGHT_TOLERANCE = 1e-3  # rad: a cut milled from a direction this close to x is seen from its side
+FRONT_TOLERANCE = 1e-9  # of the pin's radius: points up to this far behind y = 0 count as in front
 
 
 @dataclass(frozen=True)
 class DrawnCut:
     """The edges of a cut in a drawing.
 
-    lines: points (P, 2), z and x in m, and whether the line is hidden.
-    notches: z and x of two opposite corners of rectangles, the second on the silhouette, m; their
-    edges are among the lines.
+    lines: points (P, 2), z and x in m, of each line, and whether the line is hidden.
+    notches: z and x of two opposite corners of each rectangle, the second on the silhouette, m; the
+    edges of the rectangles are among the lines.
     """
 
     lines: tuple[tuple[Floats, bool], ...]
@@ -58,19 +58,22 @@ def _bore(pin: Pin, z: float) -> float:
 
 
 def _placed(angle: float, u: Floats, aside: Floats, z: Floats) -> Floats:
-    """Points (P, 3) at distances u along a direction across the pin, and `aside` of it."""
+    """Points (P, 3), m, in a frame that is rotated about the pin's axis.
+
+    angle: direction of u, rad from x. u, aside: distances along and across this direction, m.
+    """
     c, s = math.cos(angle), math.sin(angle)
     u, aside, z = np.broadcast_arrays(u, aside, z)
     return np.stack([c * u - s * aside, s * u + c * aside, z], axis=1)
 
 
 def _seen(points: Floats) -> list[tuple[Floats, bool]]:
-    """A line on the outside of a pin as its visible and hidden parts. points: (P, 3)."""
+    """The visible and hidden parts of a line on the outside of a pin. points: (P, 3)."""
     front = points[:, 1] >= -FRONT_TOLERANCE * np.abs(points[:, :2]).max()
     changes = np.flatnonzero(front[1:] != front[:-1]) + 1
     out = []
     for rows in np.split(np.arange(len(points)), changes):
-        if rows[0] > 0:  # parts share their end points
+        if rows[0] > 0:  # neighbouring parts share an end point
             rows = np.concatenate([[rows[0] - 1], rows])
         out.append((_flat_view(points[rows]), not bool(front[rows[-1]])))
     return [(x, hidden) for x, hidden in out if len(x) > 1]
@@ -88,14 +91,14 @@ def _inside(points: Floats) -> list[tuple[Floats, bool]]:
 
 
 def _mouth(hole: Hole, a: float, r: float, side: float) -> Floats:
-    """The mouth of a hole, of radius a, on a cylinder of radius r, on either side, (P, 3)."""
+    """The mouth of a hole, with radius a, on a cylinder of radius r, (P, 3). side: 1 or -1."""
     aside = hole.offset + a * np.cos(CIRCLE_ANGLES)
     u = side * np.sqrt(np.maximum(r**2 - aside**2, 0.0))
     return _placed(hole.angle, u, aside, hole.z + _along(hole, u, a * np.sin(CIRCLE_ANGLES)))
 
 
 def _along(hole: Hole, u: Floats, up: Floats) -> Floats:
-    """The z from a hole's own at distances u from the pin's axis, `up` across the hole's axis."""
+    """The z relative to a hole's z, of points at u from the pin's axis and `up` from the hole's."""
     return np.asarray(u * math.tan(hole.tilt) + up / math.cos(hole.tilt))
 
 
@@ -156,13 +159,13 @@ def _passage(passage: Passage, pin: Pin) -> list[tuple[Floats, bool]]:
 
 
 def _recess(recess: Recess) -> list[tuple[Floats, bool]]:
-    """The edges of a recess: its mouth, and those inside."""
+    """The edges of a recess: its mouth, and its inner edges."""
     mouth = [part for line in recess.lines(recess.solid.mouth) for part in _seen(line)]
     return mouth + [part for line in recess.lines(recess.solid.inner) for part in _inside(line)]
 
 
 def _steps(pin: Pin, z0: float, z1: float) -> list[tuple[float, float, float]]:
-    """Parts of a pin between two z and their outer radii, (z, z, r) in m; the largest of a cone."""
+    """Parts of a pin between two z, as (z, z, outer radius) in m; a cone has its largest radius."""
     marks = [z0, *(z for z in pin.stations if z0 < z < z1), z1]
     return [(a, b, radii(pin, a, b)[1]) for a, b in pairwise(marks)]
 
@@ -191,7 +194,7 @@ def _flat(flat: Flat, pin: Pin, z0: float, z1: float) -> DrawnCut:
         aside = np.linspace(-half, half, 49)
         lines += _seen(_placed(flat.angle, np.sqrt(r**2 - aside**2), aside, np.full(49, z)))
         lines += _seen(_placed(flat.angle, np.full(49, flat.distance), aside, np.full(49, z)))
-    if abs(math.sin(flat.angle)) < UPRIGHT_TOLERANCE:  # edges behind are those in front
+    if abs(math.sin(flat.angle)) < UPRIGHT_TOLERANCE:  # edges behind coincide with those in front
         lines = [(x, hidden) for x, hidden in lines if not hidden]
     return DrawnCut(tuple(lines), tuple(notches))
 

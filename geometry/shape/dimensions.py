@@ -1,4 +1,4 @@
-"""The dimensions of a profile by their keys, and the pin with another value of one."""
+"""The dimensions of a profile by their keys, and the pin after a change of one of them."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _RADIUS_KEYS = (("edge_radius", "edge_radii"), ("bore_radius", "bore_radii"))
 class Dimension:
     """A dimension of a pin.
 
-    key: in the pin's table of a study; several of one dimension are joined by KEY_JOINT.
+    key: key in the pin's table of a study; several keys of one dimension are joined by KEY_JOINT.
     value: m.
-    changed: gives the pin with another value of the dimension.
+    changed: function that returns the pin with another value (m) of the dimension.
     """
 
     key: str
@@ -29,7 +29,7 @@ class Dimension:
 
 
 def dimensions(pin: Pin) -> Iterator[Dimension]:
-    """All dimensions that are not zero; equal diameters or bores of neighbours are one."""
+    """All nonzero dimensions; equal diameters or bores of neighbours are a single dimension."""
     ends = [(k, end) for k in range(len(pin.segments)) for end in (0, 1)]
     for key, pairs in (
         ("diameter", [s.diameters for s in pin.segments]),
@@ -55,7 +55,7 @@ def dimensions(pin: Pin) -> Iterator[Dimension]:
 
 
 def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> Dimension:
-    """The diameter or bore that some ends of segments, (segment, end) from 0, have in common."""
+    """The common diameter or bore of some ends of segments. at: pairs (segment, end), from 0."""
 
     def changed(new: float) -> Pin:
         segments = list(pin.segments)
@@ -79,7 +79,10 @@ def _across(pin: Pin, key: str, value: float, at: Sequence[tuple[int, int]]) -> 
 def _of_segment(
     pin: Pin, key: str, value: float, k: int, change: Callable[[Any, float], dict[str, Any]]
 ) -> Dimension:
-    """A dimension of segment k (from 0). change: gives its changed fields by the new value."""
+    """A dimension of segment k (from 0).
+
+    change: function of the segment and the new value that returns the changed fields.
+    """
 
     def changed(new: float) -> Pin:
         segments = list(pin.segments)
@@ -95,7 +98,7 @@ def _field(name: str) -> Callable[[Any, float], dict[str, Any]]:
 
 
 def _end(name: str, end: int) -> Callable[[Any, float], dict[str, Any]]:
-    """The change of a field that has a value at both ends, at one of these."""
+    """The change at one end (0 or 1) of a field that has a value for both ends."""
 
     def change(segment: Any, new: float) -> dict[str, Pair]:
         first, last = getattr(segment, name)

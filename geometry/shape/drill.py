@@ -20,8 +20,8 @@ MIN_TIP_ANGLE = math.pi / 6.0  # rad
 class Placed:
     """A body of revolution that is removed, at its place in the pin.
 
-    outline: in (s, t), m; s is the distance from the body's axis and t the position along it.
-    origin, direction: point on the axis at t = 0, m, and unit vector along it.
+    outline: outline in (s, t), m; s is the distance from the body's axis, t the position along it.
+    origin, direction: point on the axis at t = 0, m, and unit vector along the axis.
     """
 
     outline: tuple[Edge, ...]
@@ -40,14 +40,14 @@ class Bottom:
     """The bottom of a blind hole.
 
     tip: angle of the cone that the drill leaves, rad; pi for a flat bottom.
-    radius: of the rounded corners there, m.
+    radius: radius of the rounded corners of the bottom, m.
     """
 
     tip: float = FLAT_TIP_ANGLE
     radius: float = 0.0
 
     def rounded(self, digits: int) -> Bottom:
-        """The bottom with its radius rounded to so many digits, and its angle to nine."""
+        """The bottom with its radius rounded to `digits` decimals, and its angle to nine."""
         tip = round(self.tip, 9)
         return Bottom(
             FLAT_TIP_ANGLE if tip >= round(FLAT_TIP_ANGLE, 9) else tip, round(self.radius, digits)
@@ -58,11 +58,11 @@ class Bottom:
         return replace(self, radius=self.radius * factor)
 
     def height(self, diameter: float) -> float:
-        """Height of the cone below the full diameter (m), m."""
+        """Height of the cone below the end of the full `diameter` (m), m."""
         return diameter / 2.0 / math.tan(self.tip / 2.0) if self.tip < FLAT_TIP_ANGLE else 0.0
 
     def check(self, diameter: float, require: Require) -> None:
-        """Raises: GeometryError where the angle or the radius is not possible."""
+        """Raise GeometryError (by `require`) where the angle or the radius is not possible."""
         in_range = MIN_TIP_ANGLE <= self.tip <= FLAT_TIP_ANGLE + 1e-12
         require(
             in_range,
@@ -71,7 +71,7 @@ class Bottom:
             "tip-angle",
         )
         half = self.tip / 2.0
-        # Length of the cone's side that roundings at its ends take, per radius.
+        # Length that the roundings at both ends of the cone's side take, per unit of radius.
         taken = math.tan(half / 2.0) + (1.0 / math.tan(half) if self.tip < FLAT_TIP_ANGLE else 0.0)
         max_radius = 0.98 * diameter / 2.0 / math.sin(half) / taken
         require(
@@ -111,7 +111,7 @@ SQUARE_BOTTOM = Bottom()  # flat, with a sharp corner
 class Drilled(Cut):
     """A cut by a drill.
 
-    diameter: m. bottom: of a blind hole.
+    diameter: m. bottom: bottom of a blind hole.
     """
 
     diameter: float
@@ -127,7 +127,7 @@ class Drilled(Cut):
         return super().scaled(factor)._with({"bottom": self.bottom.scaled(factor)})
 
     def rounded(self, digits: int) -> Self:
-        """The same cut with its lengths rounded to so many digits, also those of its bottom."""
+        """The same cut with its lengths rounded to `digits` decimals, also those of its bottom."""
         return super().rounded(digits)._with({"bottom": self.bottom.rounded(digits)})
 
 
@@ -137,7 +137,7 @@ def drill_outline(
     """The closed outline of a blind tool of radius a.
 
     floor: t at which the full diameter ends, m. top: t at which the tool ends, m.
-    chamfer: its width and t of the mouth, m; or None.
+    chamfer: width of the chamfer and t of the mouth, m; or None.
     """
     edges = list(bottom.edges(a, floor))
     return closed_outline(edges, wall_edges(a, top, chamfer))
@@ -146,11 +146,15 @@ def drill_outline(
 def wall_edges(
     a: float, top: float, chamfer: tuple[float, float] | None
 ) -> list[tuple[str | None, float, float]]:
-    """Names and ends (s, t) of the edges along the wall and its chamfer, m; as `drill_outline`."""
+    """Names and ends (s, t), m, of the edges along the wall and its chamfer.
+
+    a, top, chamfer: as for `drill_outline`.
+    """
     if chamfer is None:
         return [("wall", a, top)]
     wide, mouth = chamfer
-    # The cone goes on outside of the pin, as an edge that just touched the pin's surface was lost.
+    # The cone continues outside the pin, because an edge that just touches the pin's surface is
+    # lost.
     cone = [("wall", a, mouth - wide), ("chamfer", a + 2.0 * wide, mouth + wide)]
     return [*cone, (None, a + 2.0 * wide, top)]
 
@@ -158,7 +162,10 @@ def wall_edges(
 def closed_outline(
     edges: list[Edge], rest: list[tuple[str | None, float, float]]
 ) -> tuple[Edge, ...]:
-    """The closed outline: edges, further edges by names and ends (s, t), and back on the axis."""
+    """The closed outline: `edges`, then the edges to the ends of `rest`, and back along the axis.
+
+    rest: names and ends (s, t) of the further edges, m.
+    """
     for name, s, t in rest:
         edges.append(Edge(name, edges[-1].end, (s, t)))
     low, high = edges[0].start, (0.0, edges[-1].end[1])

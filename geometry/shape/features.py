@@ -1,4 +1,4 @@
-"""Cuts in a profile: removed volumes, each with its surfaces, extent and symmetries."""
+"""Cuts in a profile as removed volumes, each with its surfaces, extent and symmetries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from geometry.shape.pin import Pin
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-Require = Callable[[bool, str, str], None]  # of `requirement`
+Require = Callable[[bool, str, str], None]  # returned by `requirement`
 Off = Callable[[Floats], Floats]  # distances (P,) of points (P, 3) from a surface
 ANGLE_TOLERANCE = 1e-9  # rad
 
@@ -23,10 +23,10 @@ ANGLE_TOLERANCE = 1e-9  # rad
 class SmoothPart:
     """A smooth part of a cut's surface.
 
-    part: its name, such as "wall".
-    kind: gmsh's type of surface; "": any.
-    off: distance of points from it.
-    radius: of the inner corner that it rounds, m; 0 where it rounds none.
+    part: name of the part, such as "wall".
+    kind: gmsh's type of surface; "" for any type.
+    off: function that returns the distance of points from the part.
+    radius: radius of the inner corner that the part rounds, m; 0 where it rounds none.
     """
 
     part: str
@@ -38,7 +38,7 @@ class SmoothPart:
 class Cut(ABC):
     """A volume that is removed from a profile. Lengths are in m.
 
-    what: kind of the cut, as in names like "hole 1".
+    what: kind of the cut, used in names such as "hole 1".
     lengths: names of the fields that are lengths.
     angle: direction of the cut, rad from x.
     """
@@ -59,38 +59,41 @@ class Cut(ABC):
 
     @property
     def undivided(self) -> bool:
-        """Whether no plane may divide it, since OpenCASCADE only rounds whole edges."""
+        """Whether no plane may divide the cut, because OpenCASCADE can only round whole edges."""
         return False
 
     @property
     def half_turn(self) -> bool:
-        """Whether half a turn about the pin's axis maps it to itself."""
+        """Whether half a turn about the pin's axis maps the cut to itself."""
         return False
 
     @abstractmethod
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface in a profile."""
+        """The smooth parts of the cut's surface in a profile."""
 
     @abstractmethod
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when it cannot be cut into a profile. name, at: for the message."""
+        """Raise GeometryError when the profile cannot have this cut. name, at: for the message."""
 
     @abstractmethod
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
-        """The same cut with its two ends in z changed."""
+        """The same cut with other ends. change: from old to new ends in z, m."""
 
     @property
     def opens(self) -> tuple[float, float]:
-        """Least and greatest z of the part of the outer surface that it removes, m."""
+        """Least and greatest z of the part of the outer surface that the cut removes, m."""
         return self.extent
 
     @abstractmethod
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) of the points x (P, 3), m, of an outer cylinder that are removed."""
+        """Mask (P,) of the points x (P, 3), m, of an outer cylinder that are removed.
+
+        radius: radius of that cylinder, m.
+        """
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """Names of the end faces that it cuts although they are not in its extent."""
+        """Names of the end faces that the cut cuts, although they are not in its extent."""
         return ()
 
     def scaled(self, factor: float) -> Self:
@@ -98,7 +101,7 @@ class Cut(ABC):
         return self._with({key: _times(getattr(self, key), factor) for key in self.lengths})
 
     def rounded(self, digits: int) -> Self:
-        """The same cut with its lengths rounded to so many digits, and its angle to nine."""
+        """The same cut with its lengths rounded to `digits` decimals, and its angle to nine."""
         lengths = {key: getattr(self, key) for key in self.lengths}
         rounded = {k: None if x is None else round(x, digits) + 0.0 for k, x in lengths.items()}
         return self._with(rounded | {"angle": round(self.angle, 9) + 0.0})
@@ -112,13 +115,13 @@ class Cut(ABC):
         return self._with({"angle": angle})
 
     def mirrored(self, plane: str) -> Self:
-        """Its mirror image in the plane through the origin across x, y or z."""
+        """The mirror image of the cut in the plane x, y or z = 0."""
         if plane == "z":
             return self.along(lambda a, b: (-b, -a))
         return self.turned(-self.angle if plane == "y" else math.pi - self.angle)
 
     def like(self, other: Cut, tolerance: float) -> bool:
-        """Whether it equals another cut up to a tolerance (m)."""
+        """Whether this cut equals another one up to a tolerance (m)."""
         if type(other) is not type(self):
             return False
         period = 1.0 if self.half_turn else 0.5
@@ -130,7 +133,7 @@ class Cut(ABC):
 
     @property
     def round(self) -> bool:
-        """Whether it is a body of revolution about the pin's axis."""
+        """Whether the cut is a body of revolution about the pin's axis."""
         return False
 
     def _with(self, changes: dict[str, Any]) -> Self:
@@ -145,7 +148,7 @@ def _times(value: float | None, factor: float) -> float | None:
 
 
 def _near(a: Any, b: Any, tolerance: float) -> bool:
-    """Whether two values are equal; numbers within a tolerance."""
+    """Whether two values are equal; floating-point numbers, within a tolerance."""
     if isinstance(a, float) and isinstance(b, float):
         return abs(a - b) <= tolerance
     return bool(a == b)
@@ -166,9 +169,9 @@ def outer_radius(pin: Pin, z: float) -> float:
 
 
 def requirement(what: str, at: Place) -> Require:
-    """A function of a condition, a text and a code, which raises a GeometryError unless it holds.
+    """A function of a condition, a text and a code, which raises GeometryError if it is false.
 
-    what: on which the text is. at: its place, for the message.
+    what: subject of the text. at: place of the subject in the study.
     """
 
     def require(holds: bool, text: str, code: str) -> None:

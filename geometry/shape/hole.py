@@ -1,4 +1,4 @@
-"""Holes across the pin, through it or blind; through it also beside its axis or oblique."""
+"""Holes across the pin, blind or through; through holes may also be off the axis or oblique."""
 
 from __future__ import annotations
 
@@ -34,29 +34,29 @@ from geometry.shape.profile import Edge
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MIN_SAME_SIDE_COSINE = 0.9  # of the angle between holes that are open on the same side
-MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and take excessive meshes
+MIN_SAME_SIDE_COSINE = 0.9  # least cosine of the angle between holes open on the same side
+MIN_WALL_RATIO = 0.02  # of a diameter: thinner walls cannot be made, and need excessive meshes
 MAX_TILT = math.pi / 3.0 + 1e-12  # rad; chosen by judgement
-# Of a mouth over the one whose rounding shrinks to a point: beyond it OpenCASCADE takes 5 % more
-# from the edges than a ball of the radius leaves, or fails.
+# Size of a rounded mouth over the size at which the rounding shrinks to a point. Above this ratio
+# OpenCASCADE takes 5 % more off the edges than a rolling ball of the radius would, or fails.
 MAX_MOUTH_SHARE = 0.8
 
 
 @dataclass(frozen=True)
 class Hole(Drilled):
-    """A round hole across the pin, whose axis crosses that of the pin, or passes it.
+    """A round hole across the pin, whose axis intersects the pin's axis or passes it.
 
-    z: of its axis where that is nearest to the pin's, m.
+    z: position at which the hole's axis is nearest to the pin's, m.
     diameter: m.
-    angle: direction of its axis, rad from x; a blind hole is drilled from there.
-    depth: from the surface to the end of the full diameter, m; None: through the pin.
-    bottom: of a blind hole.
-    chamfer: width of a 90 degree countersink at its mouths, measured at the generator of the pin
+    angle: direction of the hole's axis, rad from x; a blind hole is drilled from this side.
+    depth: depth from the surface to the end of the full diameter, m; None for a through hole.
+    bottom: bottom of a blind hole.
+    chamfer: width of a 90 degree countersink at the mouths, measured at the generator of the pin
     that it meets, m.
-    mouth_radius: radius to which the edges of its mouths are rounded, m.
-    offset: of its axis from the pin's, towards `angle` plus a quarter turn, m.
-    tilt: angle by which its axis leans towards z, rad.
-    outer: radius of the pin there, m; of an oblique hole, which CutPin fills in.
+    mouth_radius: radius to which the edges of the mouths are rounded, m.
+    offset: distance of the hole's axis from the pin's, towards `angle` plus a quarter turn, m.
+    tilt: angle by which the hole's axis leans towards z, rad.
+    outer: radius of the pin at an oblique hole, m, which CutPin fills in; 0 for other holes.
     """
 
     z: float
@@ -75,65 +75,65 @@ class Hole(Drilled):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Least and greatest z, with chamfer or rounded mouth, m."""
+        """Least and greatest z, including chamfers or rounded mouths, m."""
         half = self._mouth / math.cos(self.tilt) + self.outer * abs(math.tan(self.tilt))
         return self.z - half, self.z + half
 
     @property
     def _mouth(self) -> float:
-        """Radius of its mouths, m."""
+        """Radius of the mouths, m."""
         return self.diameter / 2.0 + self.chamfer + self.mouth_radius
 
     @property
     def half_turn(self) -> bool:
-        """Whether half a turn maps it to itself: if it goes through the pin and its axis."""
+        """Whether half a turn maps the hole to itself: if it is a through hole across the axis."""
         return self.depth is None and not self.aslant
 
     @property
     def aslant(self) -> bool:
-        """Whether its axis does not cross the pin's at a right angle."""
+        """Whether the hole's axis does not intersect the pin's axis at a right angle."""
         return bool(self.offset or self.tilt)
 
     def mirrored(self, plane: str) -> Hole:
-        """Its mirror image in the plane through the origin across x, y or z."""
+        """The mirror image of the hole in the plane x, y or z = 0."""
         if plane == "z":
             return replace(super().mirrored(plane), tilt=-self.tilt)
         return replace(super().mirrored(plane), offset=-self.offset)
 
     def like(self, other: Cut, tolerance: float) -> bool:
-        """Whether it equals another cut up to a tolerance (m), seen from either end."""
+        """Whether the hole equals another cut up to a tolerance (m), with its axis either way."""
         if isinstance(other, Hole) and other.aslant and not super().like(other, tolerance):
             other = replace(other.turned(other.angle + math.pi), offset=-other.offset,
                             tilt=-other.tilt)  # fmt: skip
         return super().like(other, tolerance)
 
     def within(self, pin: Pin) -> Hole:
-        """The same hole, which knows the radius of its pin if it is oblique."""
+        """The same hole with the pin's radius as `outer` if it is oblique."""
         return replace(self, outer=outer_radius(pin, self.z)) if self.tilt else self
 
     @property
     def undivided(self) -> bool:
-        """Whether no plane may divide it: if its mouths are rounded."""
+        """Whether no plane may divide the hole: if its mouths are rounded."""
         return self.mouth_radius > 0.0
 
     @property
     def plain(self) -> bool:
-        """Whether it is a plain cylinder through the pin."""
+        """Whether the hole is a plain cylinder through the pin."""
         return self.depth is None and not self.chamfer and not self.mouth_radius
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Hole:
-        """The same hole midway between changed ends in z."""
+        """The same hole moved in z. change: from old to new ends in z, m."""
         a, b = change(self.z, self.z)
         return replace(self, z=0.5 * (a + b))
 
     def placed(self, pin: Pin, top: float) -> Placed:
-        """The volume that it removes from a profile, up to t = top (m) from its axis."""
+        """The volume that the hole removes from a profile, up to t = top (m) along its axis."""
         a, outer = self.diameter / 2.0, outer_radius(pin, self.z)
         chamfer = (self.chamfer, outer) if self.chamfer else None
         if self.depth is not None:
             outline = drill_outline(a, self.bottom, outer - self.depth, top, chamfer)
         else:
-            # Through the pin: the edges at the far side are those at the near side, mirrored.
+            # Through hole: the edges at the far side mirror those at the near side.
             upper = wall_edges(a, top, chamfer)
             lower = [(0.0, -top), *((s, -t) for _, s, t in reversed(upper))]
             names = [None, *(n for n, _, _ in reversed(upper[1:]))]
@@ -143,7 +143,7 @@ class Hole(Drilled):
         return Placed(outline, origin, direction)
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) of the points x (P, 3) in its mouths, with their chamfers or roundings."""
+        """Mask (P,) of the points x (P, 3) in the mouths, including chamfers or roundings."""
         c, s = math.cos(self.angle), math.sin(self.angle)
         u, aside = c * x[:, 0] + s * x[:, 1], c * x[:, 1] - s * x[:, 0]
         up = math.cos(self.tilt) * (x[:, 2] - self.z) - math.sin(self.tilt) * u
@@ -153,7 +153,7 @@ class Hole(Drilled):
         return np.asarray((distance < self.diameter / 2.0 + width) & on_side)
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface: wall, bottom, chamfers or mouths."""
+        """The smooth parts of the hole's surface: wall, bottom, chamfers or mouths."""
         top = 4.0 * pin.largest_diameter
         parts = turned_surfaces(self.placed(pin, top))
         if self.mouth_radius:
@@ -163,11 +163,14 @@ class Hole(Drilled):
     def _off_mouth(self, pin: Pin) -> Off:
         """Distance of points from the ring in which the rounded edge of a mouth lies.
 
-        A ball that touches the pin's surface and the hole's wall from within rolls along it.
+        The rounded edge is the path of a ball that touches the pin's surface and the hole's wall
+        from within the material.
         """
         a, rho, outer = self.diameter / 2.0, self.mouth_radius, outer_radius(pin, self.z)
-        widest = (a + rho) * outer / (outer - rho)  # where it touches the surface, at its sides
-        least = math.sqrt((outer - rho) ** 2 - 2.0 * a * rho - rho**2)  # and where the wall
+        # Distance from the hole's axis at which the ball touches the surface, at the sides, and
+        # distance from the pin's axis at which it touches the wall.
+        widest = (a + rho) * outer / (outer - rho)
+        least = math.sqrt((outer - rho) ** 2 - 2.0 * a * rho - rho**2)
         placed = self.placed(pin, 4.0 * pin.largest_diameter)
 
         def off(x: Floats) -> Floats:
@@ -179,7 +182,7 @@ class Hole(Drilled):
         return off
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when this pin cannot have the hole. name, at: for the message."""
+        """Raise GeometryError when this pin cannot have the hole. name, at: for the message."""
         require, r = requirement(f"pin {pin.name}, {name}", at), self.diameter / 2
         require(positive(r), "the diameter must be positive", "not-positive")
         low, high = self.extent
@@ -209,9 +212,9 @@ class Hole(Drilled):
             return
         outer = outer_radius(pin, self.z)
         require(positive(self.depth), "the depth must be positive", "not-positive")
-        left = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
+        to_bore = abs(outer - self.depth - self.bottom.height(self.diameter) - pin.radii(self.z)[0])
         require(
-            left >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
+            to_bore >= MIN_WALL_RATIO * self.diameter or not pin.radii(self.z)[0],
             f"its bottom is less than {MIN_WALL_RATIO:g} times its diameter from the "
             "surface of the bore; deepen it into the bore, or reduce its depth",
             "thin-wall",
@@ -236,13 +239,13 @@ class Hole(Drilled):
         )
 
     def check_beside(self, other: Hole, names: tuple[str, str], pin: Pin, at: Place) -> None:
-        """Raises: GeometryError where two holes almost touch.
+        """Raise GeometryError where two holes almost touch.
 
-        A blind hole is compared only with those that are open on the side from which it is drilled.
+        A blind hole is compared only with holes that are open on the side from which it is drilled.
         """
         through = self.depth is None, other.depth is None
         cosine = math.cos(self.angle - other.angle)
-        if any(through):  # it is open on both sides
+        if any(through):  # a through hole is open on both sides
             cosine = abs(cosine)
         if not all(through) and cosine < MIN_SAME_SIDE_COSINE:
             return
@@ -257,7 +260,7 @@ class Hole(Drilled):
         )
 
     def _check_aslant(self, pin: Pin, require: Require) -> None:
-        """Raises: GeometryError for an axis that such a hole, or this pin, cannot have."""
+        """Raise GeometryError for an offset or tilt that this hole, or this pin, cannot have."""
         require(
             self.plain,
             "offset and tilt are for holes through the pin without chamfer, mouth_radius and depth",
@@ -276,7 +279,7 @@ class Hole(Drilled):
             f"to {high:.4g} m",
             "mouth-not-on-cylinder",
         )
-        # Where a side of the hole touches the surface or the bore, its walls end in an edge.
+        # Where a side of the hole touches the surface or the bore, the wall thins out to an edge.
         sides = [abs(self.offset + side * self.diameter / 2.0) for side in (1.0, -1.0)]
         walls = [outer - max(sides), *(abs(s - inner) for s in sides if inner)]
         require(
@@ -287,7 +290,7 @@ class Hole(Drilled):
         )
 
     def _check_mouth(self, pin: Pin, least: float, require: Require) -> None:
-        """Raises: GeometryError for a chamfer or rounding that does not fit.
+        """Raise GeometryError for a chamfer or rounding that does not fit.
 
         least: smallest outer radius of the pin at the hole, m.
         """
@@ -318,7 +321,7 @@ class Hole(Drilled):
 
 
 def _apart(one: Hole, other: Hole) -> float:
-    """The distance of the axes of two holes, m."""
+    """The distance between the axes of two holes, m."""
     if not (one.aslant or other.aslant):
         return abs(one.z - other.z)
     (a, d), (b, e) = (_line(hole) for hole in (one, other))

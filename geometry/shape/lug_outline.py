@@ -1,6 +1,6 @@
-"""The outline of a lug in its plane: a head about a bore, and the shank by which it is held.
+"""The outline of a lug in its plane: a head around a bore, and a shank that is clamped at its end.
 
-The bore's centre is the origin and the shank leaves along x.
+The bore's centre is the origin, and the shank extends along x.
 """
 
 from __future__ import annotations
@@ -16,23 +16,24 @@ from pinbase.errors import ArgumentError
 
 HeadShape = Literal["round", "tapered", "square"]
 OutlineShape = Literal["round", "tapered", "square", "ring"]
-DIGITS = 9  # of lengths in radii: similar lugs that differ by round-off are one
-MIN_WALL = 1e-3  # of a head, of its bore's diameter
-BENDING_STATIONS = 400  # of the integral over the shank, which they give to 1e-4
+DIGITS = 9  # decimals of lengths in radii, so that similar lugs that differ by round-off are equal
+MIN_WALL = 1e-3  # least wall of a head, relative to the diameter of the lug's hole
+BENDING_STATIONS = 400  # points of the integral over the shank, which is then accurate to 1e-4
 
 
 @dataclass(frozen=True)
 class LugOutline:
     """The outline of a lug, m.
 
-    shape: "round": a round head on a shank of parallel sides; "tapered": a round head whose sides
-    leave it as tangents; "square": a plate with a straight end; "ring": a head without a shank.
-    bore: diameter, of a bushing's inside if there is one.
+    shape: "round" is a round head on a shank with parallel sides; "tapered" a round head on a shank
+    whose sides are tangents of the head; "square" a plate with a straight end; "ring" a head
+    without a shank.
+    bore: diameter of the bore; with a bushing, its inner diameter.
     head: outer diameter of a round head.
-    width: of the shank where it is held; of the whole plate for "square".
-    length: from the bore's centre to where the shank is held.
-    end: from the bore's centre to the end of the head.
-    interface: diameter of the hole in which a bushing sits; None without one.
+    width: width of the shank where it is clamped; for "square", of the whole plate.
+    length: distance from the bore's centre to the clamped end of the shank.
+    end: distance from the bore's centre to the end of the head.
+    interface: diameter of the hole in which a bushing sits; None without a bushing.
 
     Raises: ArgumentError where the head does not surround its bore, or the shank does not fit it.
     """
@@ -91,7 +92,7 @@ class LugOutline:
             )
 
     def in_radii(self) -> LugOutline:
-        """The outline with its bore's radius as the unit of length, alike for similar lugs."""
+        """The outline in units of the bore's radius, in which similar lugs are equal."""
         one = self.bore / 2.0
         lengths = "bore", "head", "width", "length", "end", "interface"
         sizes = {name: getattr(self, name) for name in lengths}
@@ -109,7 +110,7 @@ class LugOutline:
 
     @property
     def joints(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The points where the upper side leaves a round head and where it is held, m."""
+        """The points at which the upper side leaves a round head and at which it is clamped, m."""
         R, half = self.head / 2.0, min(self.width, self.head) / 2.0
         if self.shape == "round":
             return (self.centre + math.sqrt(R * R - half * half), half), (self.length, half)
@@ -119,16 +120,20 @@ class LugOutline:
 
     @property
     def width_at_bore(self) -> float:
-        """The width across the shank through the bore's centre, m, at most that of a round head: of
-        an eccentric one on a narrower shank it is less.
+        """The width across the shank through the bore's centre, m.
+
+        It is at most the diameter of a round head, and less for an eccentric head on a narrower
+        shank.
         """
         width = 2.0 * float(self._half_width(np.zeros(1))[0])
         return width if self.shape == "square" else min(width, self.head)
 
     @property
     def bending(self) -> float:
-        """The integral of dx / width from the bore's centre to where the shank is held, without the
-        hole: by it a lug bends out of its plane, like a beam of such width.
+        """The integral of dx / width from the bore's centre to the clamped end of the shank.
+
+        The width is that of the material, without the hole. The integral determines how a lug bends
+        out of its plane, like a beam of this width.
         """
         step = self.length / BENDING_STATIONS
         x = np.asarray(step * (np.arange(BENDING_STATIONS) + 0.5), dtype=np.float64)
@@ -136,7 +141,7 @@ class LugOutline:
         return float(np.sum(step / (2.0 * (self._half_width(x) - hole))))
 
     def _half_width(self, x: Floats) -> Floats:
-        """Half of the width (P,) m, at x (P,) m from the bore's centre towards the shank."""
+        """Half of the outer width, (P,) m, at x (P,) m from the bore's centre towards the shank."""
         if self.shape == "square":
             return np.full(len(x), self.width / 2.0)
         (leaves, half), (held, last) = self.joints

@@ -1,4 +1,4 @@
-"""Milled cuts: flats, keyways and slots."""
+"""Milled cuts, which are flats, keyways and slots."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from geometry.shape.tolerance import snapped
 from pinbase.arrays import Floats, Mask
 from pinbase.errors import Place
 
-MAX_BOTTOM_RADIUS_RATIO = 0.45  # largest radius at the bottom of a slot over its width
+MAX_BOTTOM_RADIUS_RATIO = 0.45  # largest ratio of the radius at the bottom of a slot to its width
 
 
 class Milled(Cut):
-    """A milled cut from z0 to z1 (m), with a radius (m) at its bottom."""
+    """A milled cut from z0 to z1 (m), with a radius (m) at the inner corners of its bottom."""
 
     z0: float
     z1: float
@@ -31,7 +31,7 @@ class Milled(Cut):
         return self.z0, self.z1
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
-        """The same cut with its two ends in z changed."""
+        """The same cut with other ends. change: from old to new ends in z, m."""
         return self._with(dict(zip(("z0", "z1"), change(self.z0, self.z1), strict=True)))
 
     def snapped(self, marks: Collection[float], tolerance: float) -> Self:
@@ -39,10 +39,10 @@ class Milled(Cut):
         return self.along(lambda a, b: (snapped(a, marks, tolerance), snapped(b, marks, tolerance)))
 
     def past(self, length: float, near: float) -> Self:
-        """The same cut, extended where it ends at an end of the pin or beyond.
+        """The same cut, extended where it ends at an end of the pin or beyond it.
 
-        Its rounded ends are then outside the pin.
-        length: of the pin, m. near: tolerance, m.
+        The rounded ends of the cut are then outside the pin.
+        length: length of the pin, m. near: tolerance, m.
         """
         far = 2.0 * self.radius + (self.size if math.isfinite(self.size) else 0.0)
         if not far:
@@ -56,10 +56,10 @@ class Milled(Cut):
 class Flat(Milled):
     """A flat, which removes everything beyond a distance from the axis on one side.
 
-    z0, z1: its ends, m.
-    distance: from the axis, m.
-    angle: direction of its normal, rad from x.
-    radius: of the inner corners at its ends, m.
+    z0, z1: axial positions of the ends, m.
+    distance: distance from the pin's axis, m.
+    angle: direction of the flat's normal, rad from x.
+    radius: radius of the inner corners at the ends, m.
     """
 
     z0: float
@@ -73,23 +73,23 @@ class Flat(Milled):
 
     @property
     def size(self) -> float:
-        """Infinity: a flat has no width of its own."""
+        """Infinity, because a flat has no width of its own."""
         return math.inf
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) of the points x (P, 3) beyond the distance, between its ends."""
+        """Mask (P,) of the points x (P, 3) beyond the flat's distance and between its ends."""
         del radius
         u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
         return np.asarray((u > self.distance) & (x[:, 2] > self.z0) & (x[:, 2] < self.z1))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface: floor, ends, and fillets between them."""
+        """The smooth parts of the flat's surface: floor, ends, and fillets between them."""
         del pin
         below, beyond, both = _rounded(self, lambda x: np.full(len(x), -math.inf), self.distance)
         return _parts(below, beyond, both, self.radius, "end")
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when it cuts nothing, or reaches the axis."""
+        """Raise GeometryError when this pin cannot have the flat. name, at: for the message."""
         require = requirement(f"pin {pin.name}, {name}", at)
         _check_ends(self, pin, require)
         require(self.distance > 0.0, "the distance from the axis must be positive", "not-positive")
@@ -112,12 +112,12 @@ class Flat(Milled):
 class Slot(Milled):
     """A slot or keyway along the pin.
 
-    z0, z1: its ends, m.
+    z0, z1: axial positions of the ends, m.
     width: m.
-    depth: from the surface, m; None: through the whole pin.
-    angle: direction from which it is milled, rad from x.
-    radius: of the corners at its bottom, m.
-    round_ends: whether its ends are half circles in plan; otherwise they are square.
+    depth: depth from the surface, m; None for a slot through the whole pin.
+    angle: direction from which the slot is milled, rad from x.
+    radius: radius of the corners at the bottom, m.
+    round_ends: whether the ends are half circles in plan; otherwise they are square.
     """
 
     z0: float
@@ -138,29 +138,32 @@ class Slot(Milled):
 
     @property
     def half_turn(self) -> bool:
-        """Whether half a turn maps it to itself: if it goes through the pin."""
+        """Whether half a turn maps the slot to itself: if it goes through the pin."""
         return self.depth is None
 
     @property
     def middle(self) -> float:
-        """Position z of its middle, m."""
+        """Position z of the middle of the slot, m."""
         return 0.5 * (self.z0 + self.z1)
 
     def floor(self, pin: Pin) -> float:
-        """Distance of its bottom from the axis, m."""
+        """Distance of the slot's bottom from the axis, m; minus infinity for a through slot."""
         if self.depth is None:
             return -math.inf
         return radii(pin, self.z0, self.z1)[1] - self.depth
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) of the points x (P, 3) in its outline, on the side from which it is milled."""
+        """Mask (P,) of the points x (P, 3) in the slot's outline, on the milled side."""
         del radius
         u = math.cos(self.angle) * x[:, 0] + math.sin(self.angle) * x[:, 1]
         between = (x[:, 2] > self.z0) & (x[:, 2] < self.z1)
         return np.asarray(between & (self._aside(x) < 0.0) & ((u > 0.0) | (self.depth is None)))
 
     def _aside(self, x: Floats) -> Floats:
-        """Distance of points (P, 3) outside its walls in plan, (P,) m, negative inside."""
+        """Distance of points (P, 3) from the slot's outline in plan, (P,) m, negative inside.
+
+        A slot with square ends has only its side walls here; see `_past_ends`.
+        """
         half, radius = self.width / 2.0, self.width / 2.0 if self.round_ends else 0.0
         half_length = 0.5 * (self.z1 - self.z0) - radius
         y = np.abs(math.cos(self.angle) * x[:, 1] - math.sin(self.angle) * x[:, 0])
@@ -170,7 +173,7 @@ class Slot(Milled):
         return np.asarray(np.hypot(y, past) - half)
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface: bottom, walls, ends, and fillets between them."""
+        """The smooth parts of the slot's surface: bottom, walls, ends, and fillets between them."""
         aside = self._aside
         floor = self.floor(pin)
         below, beyond, both = _rounded(self, aside, floor)
@@ -186,7 +189,7 @@ class Slot(Milled):
         return tuple(out)
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when this pin cannot have the slot. name, at: for the message."""
+        """Raise GeometryError when this pin cannot have the slot. name, at: for the message."""
         require, length = requirement(f"pin {pin.name}, {name}", at), self.z1 - self.z0
         _check_ends(self, pin, require)
         require(positive(self.width), "the width must be positive", "not-positive")
@@ -218,7 +221,7 @@ class Slot(Milled):
         self._check_depth(least, most, require, tolerance)
 
     def _check_depth(self, least: float, most: float, require: Require, tolerance: float) -> None:
-        """Raises: GeometryError for a depth or radius that does not fit.
+        """Raise GeometryError for a depth or radius that does not fit.
 
         least, most: smallest and largest outer radius of the pin at the slot, m.
         """
@@ -254,7 +257,7 @@ class Slot(Milled):
 
 
 def _check_ends(cut: Flat | Slot, pin: Pin, require: Require) -> None:
-    """Raises: GeometryError unless the ends are in order and the cut is on the pin."""
+    """Raise GeometryError unless the ends are in order and the cut is on the pin."""
     require(cut.z1 - cut.z0 > pin.tolerance, "z = [a, b] requires a < b", "z-reversed")
     inside = cut.z1 > pin.tolerance and cut.z0 < pin.length - pin.tolerance
     require(inside, "it lies entirely beyond an end of the pin", "beyond-end")
@@ -263,8 +266,8 @@ def _check_ends(cut: Flat | Slot, pin: Pin, require: Require) -> None:
 def _rounded(cut: Flat | Slot, aside: Off, floor: float) -> tuple[Off, Off, Off]:
     """Distances of points below the bottom, beyond the walls, and outside the removed volume.
 
-    The last takes the rounded corners between the two into account.
-    aside: distance of points beyond the side walls. floor: of the bottom from the axis, m.
+    The third distance includes the rounded corners between bottom and walls.
+    aside: distance of points beyond the side walls. floor: distance of the bottom from the axis, m.
     """
     c, s, rho = math.cos(cut.angle), math.sin(cut.angle), cut.radius
 
@@ -278,7 +281,7 @@ def _rounded(cut: Flat | Slot, aside: Off, floor: float) -> tuple[Off, Off, Off]
 
 
 def _corner(one: Off, other: Off, rho: float) -> Off:
-    """Distance of points outside the region in which two distances are negative, corner rounded."""
+    """Distance from the region in which two distances are negative, its corner rounded by rho."""
 
     def off(x: Floats) -> Floats:
         p, q = one(x) + rho, other(x) + rho
@@ -313,7 +316,10 @@ def _past_ends(cut: Flat | Slot, x: Floats) -> Floats:
 def _parts(
     below: Off, beyond: Off, both: Off, radius: float, wall: str, bottom: bool = True
 ) -> tuple[SmoothPart, ...]:
-    """Floor, wall and fillet, from the three distances of `_rounded`. wall: name of the wall."""
+    """Floor, wall and fillet of a cut, from the three distances of `_rounded`.
+
+    wall: name of the wall. bottom: whether there is a floor.
+    """
     out = []
     if bottom:
         out.append(SmoothPart("floor", "Plane", _on(both, below)))

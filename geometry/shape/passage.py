@@ -32,11 +32,11 @@ Mouth = Literal["start", "end", "both"]
 class Passage(Drilled):
     """A round hole along the pin.
 
-    z0, z1: ends of its full diameter, m.
+    z0, z1: axial positions of the ends of the full diameter, m.
     diameter: m.
-    offset, angle: of its axis from that of the pin, m, in the direction angle, rad from x.
-    mouth: end face from which it is drilled; "both" for a hole through the pin.
-    bottom: of a blind hole, beyond the end of its full diameter.
+    offset, angle: distance of the hole's axis from the pin's, m, and its direction, rad from x.
+    mouth: end face from which the hole is drilled; "both" for a through hole.
+    bottom: bottom of a blind hole, beyond the end of the full diameter.
     """
 
     z0: float
@@ -52,40 +52,43 @@ class Passage(Drilled):
 
     @property
     def extent(self) -> tuple[float, float]:
-        """Least and greatest z, with its tip, m."""
+        """Least and greatest z, including the tip, m."""
         tip = self.bottom.height(self.diameter)
         down, up = (tip if self.mouth == end else 0.0 for end in ("end", "start"))
         return self.z0 - down, self.z1 + up
 
     @property
     def round(self) -> bool:
-        """Whether it is a body of revolution about the pin's axis: on the axis."""
+        """Whether the hole is a body of revolution about the pin's axis: if it is on the axis."""
         return self.offset == 0.0
 
     @property
     def opens(self) -> tuple[float, float]:
-        """An empty interval: it removes nothing of the outer surface."""
+        """An empty interval, because the hole removes nothing of the outer surface."""
         return math.inf, -math.inf
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """Names of the end faces on which its mouths are."""
+        """Names of the end faces on which the hole opens."""
         return END_FACES if self.mouth == "both" else (self.mouth,)
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) without any point: it removes nothing of the outer surface."""
+        """Mask (P,) that is false throughout: the hole removes nothing of the outer surface."""
         del radius
         return np.zeros(len(x), dtype=bool)
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Passage:
-        """The same hole with its two ends in z changed; exchanging them reverses it."""
+        """The same hole with other ends; exchanged ends reverse it.
+
+        change: from old to new ends in z, m.
+        """
         a, b = change(self.z0, self.z1)
         reverses = change(0.0, 1.0)[0] < change(0.0, 0.0)[0]
         other: dict[Mouth, Mouth] = {"start": "end", "end": "start", "both": "both"}
         return replace(self, z0=a, z1=b, mouth=other[self.mouth] if reverses else self.mouth)
 
     def placed(self, pin: Pin, top: float) -> Placed:
-        """The volume that it removes, beyond its mouths by `top` (m)."""
+        """The volume that the hole removes, extended beyond its mouths by `top` (m)."""
         del pin
         x, y = self.offset * math.cos(self.angle), self.offset * math.sin(self.angle)
         length, a = self.z1 - self.z0, self.diameter / 2.0
@@ -100,11 +103,11 @@ class Passage(Drilled):
         return Placed(outline, (x, y, self.z1), (0.0, 0.0, -1.0))
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface: wall and bottom."""
+        """The smooth parts of the hole's surface: wall and bottom."""
         return turned_surfaces(self.placed(pin, 2.0 * pin.largest_diameter))
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Raises: GeometryError when this pin cannot have the passage. name, at: for messages."""
+        """Raise GeometryError when this pin cannot have the passage. name, at: for messages."""
         require, r = requirement(f"pin {pin.name}, {name}", at), self.diameter / 2
         near = pin.tolerance
         require(positive(r), "the diameter must be positive", "not-positive")

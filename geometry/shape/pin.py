@@ -1,4 +1,4 @@
-"""A pin as a body of revolution: its segments along z, bands on which links bear, exact volume."""
+"""A pin as a body of revolution, with segments along z, bands on which links bear, exact volume."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ __all__ = ["END_FACES", "SHOULDER", "Band", "GeometryError", "Pin"]
 class Pin:
     """A pin as a body of revolution, from z = 0 on.
 
-    fillet: radius at inner corners without one of their own, m.
-    source: origin of its shape, for people.
+    fillet: radius at inner corners whose segment states no fillet, m.
+    source: origin of the shape, for people.
     merged: largest difference between diameters (or bores) that were made equal because they differ
     by less than `tolerance`, m; 0 where it was no more than round-off.
 
@@ -92,7 +92,7 @@ class Pin:
 
     @property
     def stepped(self) -> bool:
-        """Whether it consists of cylinders only, without rounded edges."""
+        """Whether the pin consists of cylinders only, without rounded edges."""
         return all(s.cylindrical for s in self.segments)
 
     @cached_property
@@ -105,13 +105,13 @@ class Pin:
     def radii(self, z: float) -> tuple[float, float]:
         """Radius of the bore and of the shaft at z without roundings, m.
 
-        At a station they are those of the segment before it.
+        At a station they are the radii of the segment before it.
         """
         i = min(max(bisect_left(self.stations, z) - 1, 0), len(self.segments) - 1)
         return self.segments[i].radii(z - self.stations[i])
 
     def radii_at(self, z: Floats) -> tuple[Floats, Floats]:
-        """Radii as of `radii` at many z (P,) m, (P,) m each."""
+        """The result of `radii` at many z (P,) m, (P,) m each."""
         i = np.clip(np.searchsorted(self.stations, z) - 1, 0, len(self.segments) - 1)
         dimensions = [(*s.bores, *s.diameters, s.length) for s in self.segments]
         b0, b1, d0, d1, length = np.array(dimensions)[i].T
@@ -119,7 +119,7 @@ class Pin:
         return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
 
     def fillet_at(self, corner: int) -> float:
-        """Radius of the inner corner between segments `corner` and `corner` + 1 (from 0), m.
+        """Fillet radius between segments `corner` and `corner` + 1 (from 0), m.
 
         It is 0 where there is no inner corner.
         """
@@ -133,12 +133,12 @@ class Pin:
 
     @cached_property
     def legs(self) -> tuple[Leg, ...]:
-        """The sides of its section, from `geometry.shape.polygon.legs`."""
+        """The sides of the pin's section, from `geometry.shape.polygon.legs`."""
         return legs(corners(self), self.tolerance)
 
     @cached_property
     def roundings(self) -> tuple[Rounding, ...]:
-        """The fillets and rounded edges of its section."""
+        """The fillets and rounded edges of the pin's section."""
         return roundings(corners(self), self.legs)
 
     @cached_property
@@ -159,11 +159,11 @@ class Pin:
     def band(self, name: str) -> Band:
         """The surface called `name`.
 
-        An outer surface has its segment's connection, name or number; the inner one this name after
-        "bore ". For the face of a shoulder it is a cylinder of the same area, within the thicker
-        segment, through whose surface a force along the axis enters there.
+        An outer surface is named by its segment's connection, name or number, the surface of its
+        bore by the same name after "bore ". The face of a shoulder is replaced by a cylinder of the
+        same area on the thicker segment, through which an axial force on the shoulder enters.
 
-        Raises: GeometryError that lists the names there are.
+        Raises: GeometryError for an unknown name, with a list of all names.
         """
         if (face := self.shoulder(name)) is not None:
             return face
@@ -174,7 +174,7 @@ class Pin:
         return self.bands[self._position(name)]
 
     def shoulder(self, name: str) -> Band | None:
-        """The face of this name as `band` has it; None where there is no such face."""
+        """The face of this name as `band` returns it; None where there is no such face."""
         if not name.startswith(SHOULDER):
             return None
         face = next((leg for leg in self.legs if leg.name == name), None)
@@ -187,10 +187,11 @@ class Pin:
         return Band(name, band.z0, band.z1, radius)
 
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study: "start", "end" or a segment's; or the face of a
-        shoulder.
+        """The mesh boundary for a name in a study.
 
-        Raises: GeometryError that lists the names there are.
+        The name is "start", "end", that of a segment, or that of the face of a shoulder.
+
+        Raises: GeometryError for an unknown name, with a list of all names.
         """
         if name in END_FACES and any(
             leg.name == name and leg.start != leg.end for leg in self.legs
@@ -237,7 +238,7 @@ class Pin:
 
 
 def _check_dimensions(pin: Pin) -> None:
-    """Raises: GeometryError for a dimension that is impossible by itself."""
+    """Raise GeometryError for a dimension that is impossible by itself."""
     where = f"pin {pin.name}"
     if not pin.segments:
         raise GeometryError(f"{where}: the profile has no segments", "no-segments")
@@ -265,13 +266,13 @@ def _check_dimensions(pin: Pin) -> None:
 
 
 def _bore_too_large(what: str, i: int) -> GeometryError:
-    """The error of segment i (from 1), whose bore is not less than its diameter."""
+    """The error for segment i (from 1), whose bore is not less than its diameter."""
     at = ("segment", i)
     return GeometryError(f"{what}: the bore must be less than the diameter", "bore-too-large", at)
 
 
 def _check(pin: Pin) -> None:
-    """Raises: GeometryError for dimensions that do not fit together, or names used twice."""
+    """Raise GeometryError for dimensions that do not fit together, or names used twice."""
     where, least = f"pin {pin.name}", pin.tolerance
     for i, s in enumerate(pin.segments, 1):
         if min(s.walls) <= least:
@@ -303,8 +304,9 @@ def _check(pin: Pin) -> None:
 
 
 def _check_own_names(pin: Pin) -> None:
-    """Raises: GeometryError for a segment's name that another surface has of itself, such as
-    "segment 3" or "shoulder 1".
+    """Raise GeometryError for a segment whose name is the default name of another surface.
+
+    Such names are "segment 3" or "shoulder 1".
     """
     own = [leg.name for leg in pin.legs] + [rounding.name for rounding in pin.roundings]
     for s, label in zip(pin.segments, pin.labels, strict=True):
@@ -322,7 +324,7 @@ def _check_own_names(pin: Pin) -> None:
 
 
 def _check_edges(pin: Pin) -> None:
-    """Raises: GeometryError for an edge radius where there is no edge."""
+    """Raise GeometryError for an edge radius where there is no edge."""
     turns = [turn_at(a, b) for a, b in pairwise(pin.segments)]
     inside = [bore_turn_at(a, b) for a, b in pairwise(pin.segments)]
     for i, s in enumerate(pin.segments):
@@ -348,7 +350,7 @@ def _check_edges(pin: Pin) -> None:
 
 
 def _check_fillets(pin: Pin) -> None:
-    """Raises: GeometryError for fillets that do not fit their step or their segment."""
+    """Raise GeometryError for fillets that do not fit their step or their segment."""
     for i, (left, right) in enumerate(pairwise(pin.segments)):
         rho = pin.fillet_at(i)
         step = 0.5 * abs(left.diameters[1] - right.diameter)
@@ -367,7 +369,7 @@ def _check_fillets(pin: Pin) -> None:
 
 
 def _overlapping(pin: Pin, leg: Leg) -> GeometryError:
-    """The error of roundings that take up more than the length of a side."""
+    """The error for roundings that take up more than the length of a side."""
     taken, name = sum(leg.taken) / leg.length if leg.length else math.inf, leg.name or "the axis"
     if leg.name in pin.labels:
         i = pin.labels.index(leg.name) + 1

@@ -1,4 +1,4 @@
-"""The interface of a pin for models, however its shape is given."""
+"""The interface of a pin for models, whatever the source of its shape."""
 
 from __future__ import annotations
 
@@ -13,14 +13,16 @@ from geometry.shape.pin import Pin
 class PinLike(Protocol):
     """A pin along z, with named surfaces and bands.
 
-    length, ends, volume: m, least and greatest z in m, m^3.
-    source: origin of its shape, for people, if that is not the study.
-    revolved: whether it is a body of revolution.
-    meshed: whether it is given by a mesh, which can only be refined by halving its elements.
-    profile: its body of revolution without cuts, itself where it has none; None for another body
-    from a file.
-    cuts: holes, flats, slots and passages by their names.
-    connections: names of the links that bear on it.
+    length: axial length, m.
+    ends: least and greatest z, m.
+    volume: m^3.
+    source: origin of the shape, for people, if that is not the study.
+    revolved: whether the pin is a body of revolution.
+    meshed: whether a mesh defines the pin, which can only be refined by halving its elements.
+    profile: the body of revolution before cutting, which for a pin without cuts is the pin itself;
+    None for any other body from a file.
+    cuts: holes, flats, slots, passages and recesses, by name.
+    connections: names of the links that bear on the pin.
     """
 
     @property
@@ -44,11 +46,11 @@ class PinLike(Protocol):
     @property
     def connections(self) -> tuple[str, ...]: ...
     def band(self, name: str) -> Band:
-        """The band of this name. Raises: GeometryError that lists the names there are."""
+        """The band of this name. Raises: GeometryError for an unknown name, listing all names."""
         ...
 
     def surface(self, name: str) -> str:
-        """The mesh boundary for a name in a study. Raises: GeometryError as `band`."""
+        """The mesh boundary for a name in a study. Raises: GeometryError as for `band`."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""The corners of a pin's section before rounding, and the lengths that rounding takes off sides."""
+"""The corners of a pin's section before rounding, and the lengths that roundings take off sides."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from geometry.shape.segment import Segment
 RZ = tuple[float, float]
 Turn = Literal["step", "inner", "edge", "smooth"]
 
-# rad: two surfaces whose angle differs from pi by no more are one smooth surface.
+# rad: two surfaces at an angle that differs from pi by no more than this are one smooth surface.
 SMOOTH_ANGLE_TOLERANCE = 1e-9
 
 
 class Profile(Protocol):
-    """The part of a pin from which its outline follows; as of `Pin`."""
+    """The part of a pin from which its outline follows; see `Pin`."""
 
     @property
     def segments(self) -> tuple[Segment, ...]: ...
@@ -36,9 +36,10 @@ class Profile(Protocol):
 class Node:
     """A corner of the section.
 
-    r, z, radius: position, and radius to which it is rounded, m.
+    r, z: position, m.
+    radius: radius to which the corner is rounded, m.
     arc: name of the rounding.
-    leg: name of the surface from here to the next corner; None on the axis.
+    leg: name of the surface from this corner to the next; None on the axis.
     """
 
     r: float
@@ -57,10 +58,10 @@ class Node:
 class Leg:
     """A side of the section between two corners.
 
-    name: of its surface; None on the axis.
+    name: name of its surface; None on the axis.
     start, end: ends (r, z) of its straight part, m.
-    along: its direction, a unit vector.
-    length: between the corners, m.
+    along: direction, a unit vector.
+    length: distance between the corners, m.
     taken: lengths that roundings take at its two ends, m.
     """
 
@@ -73,21 +74,21 @@ class Leg:
 
     @property
     def short(self) -> float:
-        """Length by which roundings take more than there is, m."""
+        """Length by which roundings exceed the length of the side, m."""
         return sum(self.taken) - self.length
 
 
 def turn_at(left: Segment, right: Segment) -> Turn:
     """The way in which the outer surfaces of two segments meet.
 
-    They meet in a step, which has an inner corner and an edge, in either of these alone, or
+    They meet in a step (which has an inner corner and an edge), in an inner corner, in an edge, or
     smoothly.
     """
     return _turn((left.length, *left.diameters), (right.length, *right.diameters))
 
 
 def bore_turn_at(left: Segment, right: Segment) -> Turn:
-    """The way in which the bores of two segments meet, as of `turn_at`."""
+    """The way in which the bores of two segments meet, as for `turn_at`."""
     turn = _turn((left.length, *left.bores), (right.length, *right.bores))
     return {"inner": "edge", "edge": "inner"}.get(turn, turn)  # type: ignore[return-value]
 
@@ -102,7 +103,7 @@ def _turn(left: tuple[float, float, float], right: tuple[float, float, float]) -
 
 
 def corners(pin: Profile) -> tuple[Node, ...]:
-    """All corners, counter-clockwise in (r, z) from the inner end of the start face on."""
+    """All corners, counter-clockwise in (r, z), starting at the inner end of the start face."""
     first, last = pin.segments[0], pin.segments[-1]
     z = pin.stations[-1]
     start = Node(first.bores[0] / 2, 0.0, first.bore_radii[0], "bore edge start", "start")
@@ -160,8 +161,8 @@ def _bore(pin: Profile, i: int) -> str | None:
 def legs(nodes: tuple[Node, ...], tolerance: float) -> tuple[Leg, ...]:
     """The sides from every corner to the next.
 
-    Roundings that take up a whole side meet in one point of it.
-    tolerance: length of a straight part that counts as nothing, m.
+    Where roundings take up a whole side, its straight part is a single point.
+    tolerance: length of a straight part that counts as zero, m.
     """
     around = [(a.at, b.at) for a, b in pairwise((*nodes, nodes[0]))]
     along = [_unit(a, b) for a, b in around]
@@ -187,8 +188,8 @@ class Rounding:
 
     at: the corner (r, z), m.
     radius: m.
-    reach: length that it takes off both sides, m.
-    inner: whether it is a fillet, at an inner corner.
+    reach: length that the arc takes off both sides, m.
+    inner: whether the arc is a fillet, at an inner corner.
     """
 
     name: str

@@ -39,10 +39,10 @@ class Stripe:
 def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = ()) -> Pin:
     """The pin between two outlines, each from z = 0 to the other end.
 
-    outside: corners of the outer surface. bore: corners of the bore; empty: a solid pin.
+    outside: corners of the outer surface. bore: corners of the bore; empty for a solid pin.
 
-    Raises: GeometryError where an outline goes back in z or does not end where the other does; as
-    Pin.
+    Raises: GeometryError where an outline goes back in z, or the two outlines do not have the same
+    ends; also the errors of Pin.
     """
     where = f"pin {name}"
     _require_forward(f"{where}: meridian", outside)
@@ -75,7 +75,10 @@ def pin_of_polyline(name: str, outside: Sequence[Bend], bore: Sequence[Bend] = (
 
 
 def _require_forward(where: str, line: Sequence[Bend]) -> None:
-    """Raises: GeometryError for an outline with too few corners, or that goes back in z."""
+    """Raise GeometryError for an outline with too few corners, or that goes back in z.
+
+    The same for more than two corners at one z, and for an end face in the outline.
+    """
     what = ("key", where.rsplit(" ", 1)[1])
     if len(line) < 2:
         raise GeometryError(f"{where} needs at least two corners", "too-few-corners", what)
@@ -105,7 +108,7 @@ def _require_forward(where: str, line: Sequence[Bend]) -> None:
 def _at(line: Sequence[Bend], z: float) -> tuple[Bend, Bend]:
     """The corners of an outline at z, before and after a step there.
 
-    Where there is only one corner, the second is the same without a radius.
+    Where there is only one corner, the second is the same corner without a radius.
     """
     corners = [bend for bend in line if bend.z == z]
     if corners:
@@ -120,8 +123,8 @@ def _segment(
 ) -> Segment:
     """The segment between two stations.
 
-    outer, core: corners (before, after) of shaft and bore at both. The radii of its outer surface
-    are set by `_joined`.
+    outer, core: corners (before, after) of shaft and bore at both stations. `_joined` sets the
+    final radii of the outer surface.
     """
     (_, mouth), (far, _) = core
     first, last = outer[0][1], outer[1][0]
@@ -133,7 +136,7 @@ def _segment(
 def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segment]:
     """Two segments with the radii of their common corners; an inner corner has a fillet.
 
-    one, other: the corner at the end of the left segment and at the start of the right one.
+    one, other: corners at the end of the left segment and at the start of the right segment.
     """
     turn, rises = turn_at(left, right), one.r < other.r
     fillet, ends = 0.0, [one.radius, other.radius]
@@ -151,12 +154,13 @@ def _joined(left: Segment, right: Segment, one: Bend, other: Bend) -> list[Segme
 def with_stripes(pin: Pin, stripes: Iterable[Stripe], origin: float = 0.0) -> Pin:
     """The pin with parts of its cylinders named.
 
-    An end of a stripe within a rounding is moved to the end of the cylinder, and a start within the
-    tolerance of the end of another stripe to that.
+    If an end of a stripe is within a rounding, it is moved to the end of the cylinder. If the start
+    of a stripe is within the tolerance of the end of another stripe, it is moved there.
 
-    origin: what messages give as z of the start face, m.
+    origin: z of the start face in messages, m.
 
-    Raises: GeometryError where a stripe is not on one cylinder; as Pin.
+    Raises: GeometryError where a stripe is not on one cylinder, or stripes overlap; also the errors
+    of Pin.
     """
     on: dict[int, list[Stripe]] = {}
     for stripe in sorted(stripes, key=lambda stripe: stripe.z0):
@@ -180,7 +184,7 @@ def with_stripes(pin: Pin, stripes: Iterable[Stripe], origin: float = 0.0) -> Pi
 def _on_cylinder(pin: Pin, stripe: Stripe, origin: float) -> tuple[int, Stripe]:
     """Number of the segment on which a stripe lies, and the stripe with its ends there.
 
-    An end within a rounding or the tolerance is that of the segment.
+    An end of the stripe within a rounding or the tolerance is moved to the end of the segment.
     """
     what, at = f"pin {pin.name}: band {stripe.name}", ("band", stripe.name)
     if not stripe.z0 < stripe.z1:
@@ -215,7 +219,7 @@ def _on_cylinder(pin: Pin, stripe: Stripe, origin: float) -> tuple[int, Stripe]:
 
 
 def _cut(segment: Segment, start: float, stripes: Sequence[Stripe]) -> Iterable[Segment]:
-    """The parts of a segment that begins at `start` (m), those of stripes with their names."""
+    """The parts of a segment that begins at `start` (m); parts on stripes have their names."""
     end = start + segment.length
     cuts = sorted({start, end, *(z for s in stripes for z in (s.z0, s.z1))})
     named = {s.z0: s for s in stripes}

@@ -26,7 +26,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Edge:
-    """A straight edge from (r, z) to (r, z), m. name: of its surface; None on the axis."""
+    """A straight edge from (r, z) to (r, z), m. name: name of its surface; None on the axis."""
 
     name: str | None
     start: RZ
@@ -34,11 +34,11 @@ class Edge:
 
     @property
     def length(self) -> float:
-        """Its length, m."""
+        """Length of the edge, m."""
         return math.dist(self.start, self.end)
 
     def beside(self, parts: Floats, off: float) -> Floats:
-        """Points (P, 2), m, at parts (P,) of the way along it, moved to the left by `off`, m."""
+        """Points (P, 2), m, at fractions `parts` (P,) of the edge, moved `off` (m) to the left."""
         along = (np.array(self.end) - np.array(self.start)) / self.length
         on_edge = np.array(self.start) + self.length * parts[:, None] * along
         return np.asarray(on_edge + off * np.array([-along[1], along[0]]))
@@ -54,8 +54,8 @@ class Edge:
 class Arc(Edge):
     """A circular edge.
 
-    centre, radius: m.
-    along: unit tangents at its two ends.
+    centre, radius: centre (r, z) and radius, m.
+    along: unit tangents at the two ends.
     """
 
     centre: RZ = (0.0, 0.0)
@@ -64,18 +64,18 @@ class Arc(Edge):
 
     @property
     def turn(self) -> float:
-        """Angle by which it turns, rad, positive to the left."""
+        """Angle by which the arc turns, rad, positive to the left."""
         (a, b), (c, d) = self.along
         return math.atan2(a * d - b * c, a * c + b * d)
 
     @property
     def length(self) -> float:
-        """Its length, m."""
+        """Length of the arc, m."""
         return abs(self.turn) * self.radius
 
     def beside(self, parts: Floats, off: float) -> Floats:
-        """Points (P, 2), m, at parts (P,) of the way along it, moved to the left by `off`, m."""
-        # The left is inside of the circle where the arc turns left.
+        """Points (P, 2), m, at fractions `parts` (P,) of the arc, moved `off` (m) to the left."""
+        # The left side is inside the circle where the arc turns left.
         first = math.atan2(self.start[1] - self.centre[1], self.start[0] - self.centre[0])
         turn, radius = first + parts * self.turn, self.radius - math.copysign(off, self.turn)
         circle = radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -100,7 +100,7 @@ class Corner:
 
 
 def meridian(pin: Profile) -> tuple[Edge, ...]:
-    """The closed outline of the section, counter-clockwise in (r, z) from the start face on."""
+    """The closed outline of the section, counter-clockwise in (r, z), from the start face on."""
     nodes, sides = corners(pin), pin.legs
     edges: list[Edge] = []
     for node, before, after in zip(nodes, (sides[-1], *sides), sides, strict=False):
@@ -117,7 +117,7 @@ def meridian(pin: Profile) -> tuple[Edge, ...]:
 
 
 def off_edge(edge: Edge) -> Callable[[Floats, Floats], Floats]:
-    """Distance of points (r, z), (P,) m each, from an edge of an outline, as a function."""
+    """A function of r and z, (P,) m each: the distance of the points from an edge of an outline."""
     (r0, z0), (r1, z1) = sorted([edge.start, edge.end])
     length = math.dist(edge.start, edge.end)
 

@@ -1,4 +1,4 @@
-"""Recesses: volumes of any shape that are removed from a profile, as a CAD file has them."""
+"""Recesses, which are volumes of any shape, from a CAD file, that are removed from a profile."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from pinbase.errors import Place
 if TYPE_CHECKING:
     from scipy.spatial import KDTree
 
-Line = tuple[tuple[float, float, float], ...]  # points, in the unit of the removed solid
+Line = tuple[tuple[float, float, float], ...]  # points in the unit of the removed solid
 
 POINTS_AT_ONCE = 4096
-ALL_AROUND = 1e-3  # of its radius: a solid with its middle closer to the axis has no direction
+ALL_AROUND = 1e-3  # of a solid's radius: if its middle is closer to the axis, it has no direction
 MOUTH_TOLERANCE = 1e-4  # of the radius: points this close to the outer surface are on it
 
 
@@ -29,8 +29,9 @@ MOUTH_TOLERANCE = 1e-4  # of the radius: points this close to the outer surface 
 class RemovedFace:
     """A smooth face of a removed solid that is within the profile.
 
-    part: its name. radius: of the inner corner that it rounds, 0 where it rounds none.
-    points: on it, at most `spacing` from any other point of it.
+    part: name of the face.
+    radius: radius of the inner corner that the face rounds, 0 where it rounds none.
+    points: points on the face; any other point of it is at most `spacing` from one of them.
     """
 
     part: str
@@ -40,12 +41,12 @@ class RemovedFace:
 
     @cached_property
     def _tree(self) -> KDTree:
-        from scipy.spatial import KDTree  # which pins without recesses do not wait for
+        from scipy.spatial import KDTree  # here, so that pins without recesses need not load it
 
         return KDTree(np.array(self.points))
 
     def distance(self, x: Floats) -> Floats:
-        """Distance of points x (P, 3) from the nearest of its points, (P,)."""
+        """Distance of points x (P, 3) from the nearest point of the face, (P,)."""
         return np.asarray(self._tree.query(x)[0])
 
 
@@ -54,8 +55,9 @@ class RemovedSolid:
     """A solid that is removed, in the axes of the profile.
 
     text: the solid in OpenCASCADE's BREP format.
-    mouth: the lines in which its faces meet the outer surface. inner: their other edges.
-    ends: names of the end faces of the profile that it cuts.
+    mouth: lines in which the solid's faces meet the outer surface of the profile.
+    inner: other edges of its faces.
+    ends: names of the end faces of the profile that the solid cuts.
     """
 
     text: str
@@ -69,9 +71,13 @@ class RemovedSolid:
 class Recess(Cut):
     """A removed solid of any shape.
 
-    z0, z1: its ends, m. width: its size across, m. angle: of its middle, rad from x.
-    nearest: its least distance from the axis, m.
-    unit: m per unit of the solid. at: z of the solid's origin, m. spun: rotation of the solid, rad.
+    z0, z1: axial positions of its ends, m.
+    width: size across, m.
+    angle: direction of its middle, rad from x.
+    nearest: least distance from the axis, m.
+    unit: m per unit of the solid.
+    at: z of the solid's origin, m.
+    spun: rotation of the solid about the axis, rad.
     """
 
     z0: float
@@ -99,11 +105,11 @@ class Recess(Cut):
 
     @property
     def faces(self) -> tuple[str, ...]:
-        """Names of the end faces that it cuts."""
+        """Names of the end faces that the recess cuts."""
         return self.solid.ends
 
     def surfaces(self, pin: Pin) -> tuple[SmoothPart, ...]:
-        """The smooth parts of its surface; distances from them are approximate."""
+        """The smooth parts of the recess's surface; distances from them are approximate."""
         del pin
         return tuple(
             SmoothPart(face.part, "", self._off(face), face.radius * self.unit)
@@ -117,9 +123,7 @@ class Recess(Cut):
         return off
 
     def nearest_part(self, x: Floats) -> tuple[float, str]:
-        """The mean distance (m) of points x (P, 3) from the face that is nearest to them, and the
-        name of that.
-        """
+        """The mean distance (m) of points x (P, 3) from the nearest face, and the face's name."""
         local = self._local(x)
         return min((float(f.distance(local).mean()) * self.unit, f.part) for f in self.solid.faces)
 
@@ -136,32 +140,32 @@ class Recess(Cut):
         return [np.array(line) @ turn * self.unit + [0.0, 0.0, self.at] for line in of]
 
     def check(self, pin: Pin, name: str, at: Place) -> None:
-        """Nothing: it was made from a profile."""
+        """Do nothing: the recess was made from a profile, which it fits."""
 
     def along(self, change: Callable[[float, float], tuple[float, float]]) -> Self:
-        """The same cut, moved in z."""
+        """The same recess, moved in z. change: from old to new (z0, z1), m."""
         z0, z1 = change(self.z0, self.z1)
         return self._with({"z0": z0, "z1": z1, "at": self.at + z0 - self.z0})
 
     def turned(self, angle: float) -> Self:
-        """The same cut in another direction. angle: rad from x."""
+        """The same recess in another direction. angle: rad from x."""
         return self._with({"angle": angle, "spun": self.spun + angle - self.angle})
 
     def mirrored(self, plane: str) -> Self:
-        """Itself, which is `like` nothing: its symmetries are not known."""
+        """The recess itself, because its symmetries are unknown (see `like`)."""
         del plane
         return self
 
     def like(self, other: Cut, tolerance: float) -> bool:
-        """False: its symmetries are not known."""
+        """Always false, because the symmetries of a recess are unknown."""
         del other, tolerance
         return False
 
     def takes(self, x: Floats, radius: float) -> Mask:
-        """Mask (P,) of the points x (P, 3), m, of an outer cylinder that are inside of its mouth.
+        """Mask (P,) of the points x (P, 3), m, of an outer cylinder that are inside the mouth.
 
-        A line along the axis from such a point to where the pin is whole crosses the edge of the
-        mouth an odd number of times.
+        A line parallel to the axis from such a point to the uncut part of the pin crosses the edge
+        of the mouth an odd number of times.
         """
         del radius
         local, inside = self._local(x), np.zeros(len(x), dtype=bool)
@@ -175,7 +179,8 @@ class Recess(Cut):
         way = -1.0 if "end" in self.solid.ends else 1.0
         for rows in np.array_split(np.arange(len(x)), len(x) // POINTS_AT_ONCE + 1):
             here = angles[0][rows, None]
-            # From -pi to pi about each point, so that a line behind it goes from one to the other.
+            # Angles from -pi to pi about each point. An edge that crosses the angle opposite to the
+            # point then jumps by more than pi, and is not counted.
             one, two = (
                 np.remainder(a - here + math.pi, 2.0 * math.pi) - math.pi for a in angles[1:]
             )
@@ -194,7 +199,7 @@ def is_on_outside(pin: Pin, line: Floats) -> bool:
 
 
 def of_solid(solid: RemovedSolid, width: float) -> Recess:
-    """The recess of a removed solid, in its unit. width: its size across."""
+    """The recess of a removed solid, in the solid's unit. width: size across."""
     x = np.array([p for face in solid.faces for p in face.points])
     edges = np.array([p for line in (*solid.mouth, *solid.inner) for p in line] or x)
     every = np.concatenate([x, edges])

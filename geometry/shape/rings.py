@@ -1,4 +1,4 @@
-"""Rings into which bands of a pin and bores of its lugs are cut; pressure is even along each."""
+"""Rings into which bands of a pin and bores of its lugs are cut; each has a uniform pressure."""
 
 from __future__ import annotations
 
@@ -15,15 +15,17 @@ from geometry.shape.segment import Segment
 from pinbase.arrays import Floats
 
 USUAL_RING_COUNT = 8  # rings of a band with sharp edges, if it is not long
-MAX_RING_LENGTH = 0.25  # ring, of the diameter, if there are so many
-# Length of each part of an outermost ring that is cut, over that of the part before it.
+MAX_RING_LENGTH = 0.25  # largest length of a ring over the diameter, for the usual count
+# An outermost ring may be cut into parts; each part ends at most this many times farther from the
+# edge than the part before it.
 RING_PART_RATIO = 2.5
-# Of a fillet's radius: its largest stress is at least this far from where the fillet begins.
+# Distance of a fillet's largest stress from the start of the fillet, at least, over its radius.
 FILLET_PEAK_OFFSET = 0.25
-MIN_RING_LENGTH = 1e-3  # ring, of the diameter
-# Where the peak at a rounded edge is resolved: rings of one length lie this far from where rounding
-# begins, of its radius, outwards (where contact ends) and inwards (where the peak is); from there
-# on each is so many times longer. Rings that grow from the start on are up to 13 % off.
+MIN_RING_LENGTH = 1e-3  # least length of a ring over the diameter
+# Resolution of the peak of pressure at a rounded edge. Over these lengths from the start of the
+# rounding, relative to its radius, rings have equal length: outwards, where contact ends, and
+# inwards, where the peak is. Beyond them each ring is longer than the one before by the factor
+# RING_GROWTH. Rings that grow from the start of the rounding on give errors of up to 13 %.
 OUTWARD_EVEN_LENGTH, INWARD_EVEN_LENGTH, RING_GROWTH = 0.08, 0.03, 1.6
 
 
@@ -34,15 +36,18 @@ def ring_ends(
     beside: float | None = None,
     longest_last: tuple[float, float] = (math.inf, math.inf),
 ) -> Floats:
-    """The ends of the rings of a band, (R + 1,) m from its start on.
+    """The ends of the rings of a band, (R + 1,) m from the start of the band.
 
-    Where its edges are rounded, the first rings of the rounding are so short that contact may end
-    in them.
-    count: number of rings where the bore is straight; more for long bands.
-    beside: to resolve the peak of pressure where rounding begins, rings of `beside` times the
-    radius there, for the usual count, and as many as lead from them to the middle.
-    longest_last: the largest length, m, of the outermost rings at both ends, which are cut in parts
-    for it where edges are sharp; where they are rounded contact ends in short ones anyway.
+    Where the lug's edges are rounded, the first rings of the rounding are so short that contact may
+    end in them.
+    edge_radius: radius of the rounded edges of the lug's bore, m; 0 for sharp edges.
+    count: number of rings where the bore is straight; long bands get more.
+    beside: length of the rings at the start of the rounding over its radius, for the usual count,
+    to resolve the peak of pressure there. Rings then grow towards the middle. None: do not resolve
+    the peak.
+    longest_last: largest lengths, m, of the outermost rings at both ends. Where edges are sharp,
+    outermost rings are cut into parts to meet them; where edges are rounded, contact ends in short
+    rings anyway.
     """
     coarser = USUAL_RING_COUNT / count
     longest = 2.0 * MAX_RING_LENGTH * band.radius * coarser
@@ -50,13 +55,16 @@ def ring_ends(
         return _to_the_peak(
             band.length, edge_radius, beside * coarser, RING_GROWTH**coarser, longest
         )
+    # Rings of the straight part, graded towards its ends.
     flat = band.length - 2.0 * edge_radius
     inner = np.zeros(1)
     if flat > 1e-9 * band.length:
         inner = graded(flat, max(count, math.ceil(0.5 * math.pi * flat / longest - 1e-9)))
+    # Sharp edges: cut the outermost rings into parts.
     if not edge_radius:
         first, last = (_parts(float(inner[1]), most) for most in longest_last)
         return np.concatenate([first, inner[1:-1], flat - last[::-1]])
+    # Rounded edges: rings whose distances from the start of the rounding grow as squares.
     rounded = max(2, count // 4, math.ceil(2.0 * edge_radius / longest))
     outer = edge_radius * (np.arange(1, rounded + 1) / rounded) ** 2
     return np.concatenate(
@@ -65,10 +73,10 @@ def ring_ends(
 
 
 def _parts(length: float, most: float) -> Floats:
-    """The ends, except the far one, of the parts of an outermost ring, from the edge on.
+    """The ends of the parts of an outermost ring, m from the edge, without the far end of the ring.
 
-    The first part is no longer than `most`; each is so many times as long as those before it
-    together.
+    The first part is no longer than `most`, m. The distances of the ends grow by a constant factor
+    of at most RING_PART_RATIO.
     """
     count = 0 if length <= most else math.ceil(math.log(length / most) / math.log(RING_PART_RATIO))
     return np.asarray(
@@ -79,8 +87,8 @@ def _parts(length: float, most: float) -> Floats:
 def beside_fillets(pin: Pin, band: Band) -> tuple[float, float]:
     """The largest length, m, of the outermost rings of a band at both ends.
 
-    It is such that a fillet's largest stress is beyond what is not read beside the rings
-    (fea.core.pressed).
+    It is so short that a fillet's largest stress lies outside the zone next to the rings in which
+    stress is not read (fea.core.pressed).
     """
     near = [
         min(
@@ -109,7 +117,10 @@ def _to_the_peak(
 
 
 def _from_edge(length: float, even: float, first: float, growth: float, longest: float) -> Floats:
-    """Lengths that add up to `length`, m: equal over `even`, then growing."""
+    """Lengths of rings that add up to `length`, m: equal over the length `even`, then growing.
+
+    first, growth, longest: as for `_growing`.
+    """
     even = min(even, length)
     count = math.ceil(even / first - 1e-9)
     alike = np.full(count, even / max(count, 1))
@@ -117,15 +128,14 @@ def _from_edge(length: float, even: float, first: float, growth: float, longest:
 
 
 def graded(length: float, count: int) -> Floats:
-    """The ends of rings, (count + 1,) m from 0 on, shorter towards both ends, where pressure
-    rises.
-    """
+    """The ends of rings, (count + 1,) m from 0, shorter towards both ends, where pressure rises."""
     return np.asarray(length * (1.0 - np.cos(np.linspace(0.0, np.pi, count + 1))) / 2.0)
 
 
 def _growing(length: float, first: float, growth: float, longest: float) -> Floats:
-    """Lengths that add up to `length`, m, from about `first` on each `growth` times the one before,
-    up to `longest`.
+    """Lengths of rings that add up to `length`, m.
+
+    They begin at about `first`, and each is `growth` times the one before, up to `longest`, m.
     """
     most = math.ceil(length / longest) + math.ceil(
         max(0.0, math.log(longest / first) / math.log(growth))
@@ -146,10 +156,11 @@ def rings(connection: str, ends: Floats) -> list[str]:
 
 
 def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
-    """The same shape with the bands of some connections cut into rings, whose ends (R + 1,) are in
-    m from the band's start.
+    """The same shape with the bands of some connections cut into rings.
 
-    A ring is cut where the band is, between its fillets: what a fillet takes stays plain.
+    Only the band itself is cut, between its fillets; the segments of the first and the last ring
+    include the parts that fillets take.
+    ends: ends (R + 1,) of the rings of each connection, m from the start of its band.
     """
     segments: list[Segment] = []
     for i, (s, band) in enumerate(zip(pin.segments, pin.bands, strict=True)):
@@ -165,10 +176,10 @@ def ringed(pin: Pin, ends: Mapping[str, Floats]) -> Pin:
 
 
 def ringed_name(pin: Pin, name: str) -> str:
-    """The name in a pin cut into rings of a surface of the whole pin: the number of a segment or of
-    a shoulder changes.
+    """The name that a surface of the whole pin has in the pin cut into rings.
 
-    pin: cut into rings.
+    The number of a segment or of a shoulder changes.
+    pin: the pin cut into rings.
     """
     kind, _, number = name.rpartition(" ")
     if kind not in ("segment", SHOULDER.strip()):
@@ -178,7 +189,7 @@ def ringed_name(pin: Pin, name: str) -> str:
 
 
 def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:
-    """The pin's own names of the surfaces of `ringed`, by the names there."""
+    """The names of surfaces in the whole pin, by their names in the `ringed` pin."""
     cut, k, names = ringed(pin, ends), 0, {}
     for i, s in enumerate(pin.segments):
         band_ends = ends.get(s.connection or "")
@@ -192,8 +203,10 @@ def whole_names(pin: Pin, ends: Mapping[str, Floats]) -> dict[str, str]:
 
 
 def annulus(pin: Pin, connection: str, outer_diameter: float, ends: Floats) -> Pin:
-    """A lug's eye, as a body of revolution from z = 0 on, whose bore has the rings of the band on
-    which it bears.
+    """A lug's eye as a body of revolution from z = 0, whose bore has the rings of its band.
+
+    connection: connection whose band the lug bears on. outer_diameter: m.
+    ends: ends (R + 1,) of the rings, m.
     """
     band = pin.band(connection)
     segments = tuple(

@@ -1,4 +1,4 @@
-"""A segment of a pin's profile: a cylinder or a cone."""
+"""A segment of a pin's profile, which is a cylinder or a cone."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Pair = tuple[float, float]
 class Segment:
     """A cylinder or cone of the profile. All lengths are in m.
 
-    diameter, bore: outer and inner diameter at its near end; bore 0 for a solid segment.
-    name, connection: of its outer surface, and the connection whose link bears on it.
-    fillet: radius of the inner corner at its far end; None: the pin's.
-    end_diameter, end_bore: at its far end; None: as at its near end.
-    edge_radii: of the edges of its outer surface at its two ends.
-    bore_radii: of the corners of its bore at its two ends.
+    diameter, bore: outer and inner diameter at the near end; bore 0 for a solid segment.
+    name, connection: name of the outer surface, and the connection whose link bears on it.
+    fillet: radius of the inner corner at the far end; None for the pin's fillet.
+    end_diameter, end_bore: outer and inner diameter at the far end; None: as at the near end.
+    edge_radii: radii of the edges of the outer surface at the two ends.
+    bore_radii: radii of the corners of the bore at the two ends.
     """
 
     length: float
@@ -36,39 +36,39 @@ class Segment:
 
     @property
     def diameters(self) -> Pair:
-        """Outer diameters at its two ends, m."""
+        """Outer diameters at the two ends, m."""
         return self.diameter, self.diameter if self.end_diameter is None else self.end_diameter
 
     @property
     def bores(self) -> Pair:
-        """Inner diameters at its two ends, m."""
+        """Inner diameters at the two ends, m."""
         return self.bore, self.bore if self.end_bore is None else self.end_bore
 
     @property
     def walls(self) -> Pair:
-        """Diameter less bore at its two ends, m."""
+        """Difference of diameter and bore at the two ends, m: twice the wall."""
         (d0, d1), (b0, b1) = self.diameters, self.bores
         return d0 - b0, d1 - b1
 
     @property
     def mean_area(self) -> float:
-        """Mean cross-section without roundings, times 4 / pi, m^2."""
+        """Mean cross-sectional area without roundings, times 4 / pi, m^2."""
         (d0, d1), (b0, b1) = self.diameters, self.bores
         return (d0 * d0 + d0 * d1 + d1 * d1 - b0 * b0 - b0 * b1 - b1 * b1) / 3.0
 
     def radii(self, z: float) -> Pair:
-        """Radii of bore and shaft at z (m) from its start, m."""
+        """Radii of bore and shaft, m, at z (m) from the start of the segment."""
         (d0, d1), (b0, b1), x = self.diameters, self.bores, z / self.length
         return (b0 + x * (b1 - b0)) / 2.0, (d0 + x * (d1 - d0)) / 2.0
 
     @property
     def cone(self) -> bool:
-        """Whether its outer surface is a cone."""
+        """Whether the outer surface is a cone."""
         return self.diameters[0] != self.diameters[1]
 
     @property
     def cylindrical(self) -> bool:
-        """Whether it has no cones and no rounded edges."""
+        """Whether the segment has no cones and no rounded edges."""
         tapered = self.cone or self.bores[0] != self.bores[1]
         return not (tapered or any((*self.edge_radii, *self.bore_radii)))
 
@@ -86,9 +86,9 @@ class Segment:
         )
 
     def cut(self, ends: Sequence[float]) -> tuple[Segment, ...]:
-        """The parts of the segment between `ends` (m), from 0 to its length, without names.
+        """The parts of the segment between `ends` (m), which run from 0 to its length, unnamed.
 
-        The first and last part keep the fillet and radii at the segment's ends.
+        The first and the last part keep the radii at the segment's ends, the last also its fillet.
         """
         parts = []
         for a, b in pairwise(ends):
@@ -130,9 +130,9 @@ def _both(pair: Pair, change: Callable[[float], float]) -> Pair:
 def merged_segments(
     segments: tuple[Segment, ...], tolerance: float
 ) -> tuple[tuple[Segment, ...], float]:
-    """Segments whose diameters and bores are equal or differ by more than the tolerance.
+    """Segments whose diameters and bores are equal or differ by more than the tolerance (m).
 
-    The second result is the largest change of a dimension, m, 0 if no more than round-off.
+    Returns also the largest change of a dimension, m; 0 if no change exceeds round-off.
     """
     outer = merged((d for s in segments for d in s.diameters), tolerance)
     inner = merged((0.0, *(d for s in segments for d in s.bores)), tolerance)

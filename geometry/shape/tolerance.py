@@ -1,8 +1,8 @@
 """The tolerance below which two dimensions of a pin are equal.
 
-0.7 in and 17.78 mm differ by one unit in the last place, but no lathe, mesh or stress knows a step
-of 1e-18 m. Dimensions of a pin that differ by less than a billionth of its diameter are therefore
-made equal when a profile becomes a pin, so that all later comparisons can be exact.
+0.7 in and 17.78 mm differ by one unit in the last place, but a step of 1e-18 m means nothing to a
+lathe, a mesh or a stress. Dimensions of a pin that differ by less than a billionth of its diameter
+are therefore made equal when a profile becomes a pin, so that all later comparisons can be exact.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import pairwise
 
-LENGTH_TOLERANCE = 1e-9  # of the smallest diameter
-DIMENSION_ROUND_OFF = 1e-13  # of a dimension: one length written in two units differs by less
+LENGTH_TOLERANCE = 1e-9  # relative to the smallest diameter
+DIMENSION_ROUND_OFF = 1e-13  # relative: a length written in two different units differs by less
 
 
 def merged(values: Iterable[float], tolerance: float) -> dict[float, float]:
-    """The merged value by each value.
+    """The merged value of each value.
 
-    Values that are each within `tolerance` of the next become the smallest of them.
+    In a chain of values that are each within `tolerance` of the next, all become the smallest.
     """
     ordered = sorted(set(values))
     merged_values = {value: value for value in ordered}

@@ -1,4 +1,4 @@
-"""Applied forces, springs and dampers on the bodies of a linkage, which its motion determines."""
+"""Applied forces, springs and dampers on the bodies of a linkage, as determined by its motion."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Complex, Floats, Mask
 
 SWITCH_TIME_TOLERANCE = 1e-12  # relative: an instant this close to a switch coincides with it
-MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close have no line between them
-MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force that passes a particle so near acts at it
+MIN_POINT_DISTANCE = 1e-12  # of the length scale: points this close define no line of action
+MAX_PARTICLE_ARM = 1e-4  # of the length scale: a force with an arm this small acts at the particle
 
 Timed = TypeVar("Timed", bound=Instants[Any])
 
@@ -30,7 +30,8 @@ Timed = TypeVar("Timed", bound=Instants[Any])
 class Push:
     """The action of a load on one item over time.
 
-    at: the item's point at which the force acts, as drawn, m.
+    item: name of the item.
+    at: point of the item at which the force acts, as drawn, m.
     force: (T,) N, complex, world axes.
     couple: (T,) N m.
     """
@@ -45,12 +46,12 @@ class Load(Unsmooth[Kinks[Motion]], Protocol):
     """A load on a linkage, known at every instant of a motion."""
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
-        """The load's actions on each item at every instant."""
+        """The actions of the load on each item at every instant."""
         ...
 
 
 def acts(times: Floats, begin: float, end: float) -> Mask:
-    """Mask (T,) of the times (T,) s at which a load acts; at a switch as just before it."""
+    """Mask (T,) of the times (T,) s at which a load acts; at a switch, the state just before it."""
     on = np.ones(len(times), dtype=bool)
     if math.isfinite(begin):
         on &= times > begin + SWITCH_TIME_TOLERANCE * abs(begin)
@@ -61,7 +62,7 @@ def acts(times: Floats, begin: float, end: float) -> Mask:
 
 @dataclass(frozen=True)
 class Varying(Generic[Timed]):
-    """A factor tabulated over a measure."""
+    """A factor tabulated over a quantity of the motion (`measure`)."""
 
     measure: Measure[Timed]
     curve: ForceTable
@@ -73,10 +74,10 @@ class Varying(Generic[Timed]):
 
 
 def factor(motion: Timed, times: Varying[Timed] | None, begin: float, end: float) -> Floats:
-    """Factor of a load at every instant, (T,); at a switch that just before it.
+    """Factor of a load at every instant, (T,); at a switch, the factor just before it.
 
-    times: its table; None: 1.
-    begin, end: times between which the load acts, s; its table need not cover others.
+    times: table of the factor; None for a factor of 1.
+    begin, end: times between which the load acts, s; the table need not cover other times.
     """
     on, out = acts(motion.times, begin, end), np.zeros(len(motion))
     if times is None:
@@ -87,7 +88,7 @@ def factor(motion: Timed, times: Varying[Timed] | None, begin: float, end: float
 
 
 def switches(*times: float) -> tuple[float, ...]:
-    """Those times at which a load begins or ends that are finite, s."""
+    """The finite times among those at which a load begins and ends, s."""
     return tuple(t for t in times if math.isfinite(t))
 
 
@@ -98,8 +99,8 @@ class Applied:
     at: the point, as drawn, m.
     force, couple: N and N m.
     follows: whether the force turns with the body (it is then stated as drawn); otherwise its
-    direction is fixed in the world.
-    times: factor of force and couple; None: 1.
+    direction is fixed in world axes.
+    times: table of the factor of force and couple; None for a factor of 1.
     begin, end: times between which the load acts, s.
     """
 
@@ -119,7 +120,7 @@ class Applied:
         return np.asarray(force * rotation)
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
-        """The force and couple at every instant; at a switch, those just before it."""
+        """The force and couple at every instant; at a switch, their values just before it."""
         yield Push(self.body, self.at, self.along(motion), self.couple * self.size(motion))
 
     @property
@@ -143,7 +144,7 @@ class ForceLaw:
 
         preload - stiffness (x - reference) - damping x' + table(x) + damper(x')
 
-    All in SI units.
+    All quantities are in SI units.
     """
 
     preload: float = 0.0
@@ -173,7 +174,8 @@ class ForceLaw:
 class Spring:
     """A spring and damper between two points, along a slider, or between two bodies that turn.
 
-    It pushes the points apart (turns the body against its base) with the force (couple) of its law.
+    A positive force (couple) of its law pushes the points apart (turns the body relative to its
+    base in the positive sense).
     """
 
     name: str
@@ -187,7 +189,7 @@ class Spring:
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """No times: a spring acts always."""
+        """An empty tuple: a spring always acts."""
         return ()
 
     def force(self, motion: Motion) -> Floats:
@@ -217,8 +219,8 @@ class Spring:
                 yield Push(turn.body, (0.0, 0.0), zero.astype(complex), force)
                 yield Push(turn.base, (0.0, 0.0), zero.astype(complex), -force)
             case Position(Slider() as slider):
-                # The slider's points need not lie on one line of action: the base also takes the
-                # couple of the two forces.
+                # The slider's two points need not lie on a common line of action, so the base also
+                # takes the couple of the two forces.
                 k = motion.linkage.sliders.index(slider)
                 along = np.asarray(force * motion.pose.axis[:, k])
                 line, _ = Distance((slider.base, slider.moving), (slider.start, slider.end)).line(
@@ -229,7 +231,7 @@ class Spring:
 
 
 def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Complex, Floats]]:
-    """The loads' actions as (item's number, force, couple), without those on the ground.
+    """Actions of the loads as (number of the item, force, couple), without those on the ground.
 
     Forces are (T,) N, complex; couples, about the item's centre of mass, (T,) N m.
 
@@ -248,7 +250,10 @@ def balance(motion: Motion, loads: tuple[Load, ...]) -> Iterator[tuple[int, Comp
 
 
 def _require_carried(motion: Motion, push: Push, arm: Complex) -> None:
-    """Raises: LinkageError for a moment about a particle. arm: (T,) m, from its centre."""
+    """Raise LinkageError for a moment about a particle.
+
+    arm: (T,) m, complex, from the particle's centre to the point of the force.
+    """
     linkage = motion.linkage
     most = MAX_PARTICLE_ARM * linkage.length_scale * np.abs(push.force).max()
     aside = np.abs(cross(arm, push.force)).max() > most

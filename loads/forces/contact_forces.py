@@ -1,4 +1,4 @@
-"""Forces of a driven linkage in proportion to contact forces: friction, and those of teeth."""
+"""Friction of sliders and pins, and radial forces of teeth, in proportion to contact forces."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ from loads.linkage.linkage import LinkageError
 from loads.motion.joint_forces import loops_of_sliders
 from pinbase.arrays import Complex, Floats
 
-MIN_SLIDING_SPEED = 1e-13  # of the fastest coordinate of the course: a slider this slow is at rest
+# Relative to the fastest coordinate of the course: a slower slider or pin counts as at rest.
+MIN_SLIDING_SPEED = 1e-13
 
 
 @dataclass(frozen=True)
 class ContactSource:
     """A force (couple) in proportion to the magnitude of a contact force.
 
-    It is the friction of a slider or pin, or the radial force of teeth.
+    It is the friction of a slider, the friction couple of a pin, or the radial force of teeth.
     which: number of the slider, connection or pair of teeth.
-    share: (T,) per newton of the contact force; m for a pin.
-    f: (T, rows) multipliers that one newton (newton metre) of it brings about.
-    couples: (T, items) couples that items require in addition, per newton metre.
-    spread: (T, teeth) radial forces of teeth, per newton.
+    share: (T,) force (couple) per newton of the contact force, with its sign; m for a pin.
+    f: (T, rows) multipliers due to one newton (newton metre) of the force (couple).
+    couples: (T, items) couples that items require in addition, per newton metre of the couple.
+    spread: (T, teeth) radial forces of teeth, per newton of the force.
     """
 
     name: str
@@ -39,18 +40,18 @@ class ContactSource:
 
 
 def sources_of(balance: ForceBalance) -> list[ContactSource]:
-    """Everything in proportion to a contact force: friction, and radial forces of teeth."""
+    """All forces in proportion to contact forces: friction (if any), and radial forces of teeth."""
     rubbing = [*_rubbing_sliders(balance), *_rubbing_pins(balance)] if balance.rubs else []
     return [*rubbing, *_teeth(balance)]
 
 
 def _opposing(balance: ForceBalance, speed: Floats) -> Floats:
-    """Sign of friction at a sliding speed (T,) m/s: against it, 0 at rest."""
+    """Sign (T,) of friction at sliding speeds (T,) m/s: opposite to the speed, 0 at rest."""
     return np.where(np.abs(speed) > MIN_SLIDING_SPEED * balance.motion.pace, -np.sign(speed), 0.0)
 
 
 def _rubbing_sliders(balance: ForceBalance) -> Iterator[ContactSource]:
-    """The friction of each slider that has some.
+    """The friction of each slider that has friction.
 
     Raises: LinkageError for a slider whose couple, and so whose friction, is indeterminate.
     """
@@ -77,7 +78,7 @@ def _rubbing_sliders(balance: ForceBalance) -> Iterator[ContactSource]:
 
 
 def _rubbing_pins(balance: ForceBalance) -> Iterator[ContactSource]:
-    """The friction couple of each pin that has some."""
+    """The friction couple of each pin that has friction."""
     linkage, motion = balance.motion.linkage, balance.motion
     for c, (joint, connection) in enumerate(linkage.connections):
         if connection.friction:
@@ -111,12 +112,13 @@ def _contact_forces(
     needed: Complex,
     by: ContactSource | None = None,
 ) -> list[Complex]:
-    """Contact forces of each source, (T, contacts) N.
+    """Contact forces at each source, (T, contacts) N, complex.
 
-    They are those of pads along their normal, of pins in the plane, and of teeth along the
+    They are the forces of pads along their normal, of pins in the plane, and of teeth along the
     pitch circle.
-    f, needed: multipliers and required forces, from which they follow.
-    by: the source that brings them about; None: the forces that the bodies require.
+    f: (T, rows) multipliers. needed: (T, items) N, forces that the items require.
+    by: the source whose unit force causes these contact forces; None for the forces that the bodies
+    require.
     """
     couples, spread = (by.couples, by.spread) if by else (balance.couples, None)
     closing = balance.closing(f, spread)
@@ -131,7 +133,7 @@ def _contact_forces(
         elif s.kind == "teeth":
             out.append(tangential[:, [s.which]].astype(complex))
         else:
-            # Two pads at a distance carry the couple by a pair of forces.
+            # Two pads at the distance `bearing` carry the couple by a pair of forces.
             n, bearing = normal[:, s.which], balance.loops.linkage.sliders[s.which].bearing
             pads = [n]
             if bearing is not None:
@@ -143,7 +145,7 @@ def _contact_forces(
 def with_contacts(
     balance: ForceBalance, f: Floats, sources: list[ContactSource]
 ) -> tuple[Floats, Floats]:
-    """Forces (couples) of the sources, (T, sources), and the multipliers with them.
+    """Forces (couples) of the sources, (T, sources), and the multipliers that include them.
 
     f: (T, rows) multipliers without the sources.
 
@@ -157,7 +159,8 @@ def with_contacts(
             f"{rubbing} contacts have friction; at most {MAX_ENUMERATED_CONTACTS} can be solved",
             "too-many-contacts",
         )
-    # Contact forces that one unit of each source brings about; then sources in proportion.
+    # Contact forces due to one unit of each source; times the share of each contact's source, they
+    # are the response of all contact forces to the size of that contact force.
     unit = [
         np.concatenate(_contact_forces(balance, sources, s.f, balance.no_forces, s), 1)
         for s in sources
@@ -178,7 +181,7 @@ def with_contacts(
 def _named(
     balance: ForceBalance, error: JammingError, response: Complex, names: list[str]
 ) -> JammingError:
-    """The same error, which also names the time and what rubs."""
+    """The same error, which also names the time and the slider or pin that rubs."""
     t = int(error.instants[0])
     grips = np.abs(np.diagonal(response[t]))
     when = f"t = {balance.motion.times[t]:.6g} s" if len(balance.motion) > 1 else ""

@@ -16,11 +16,11 @@ from pinbase.arrays import Floats
 
 
 class Rubbing(Protocol):
-    """A motion: what this module asks of it."""
+    """The part of a motion that this module uses."""
 
     @property
     def rubbing(self) -> Floats:
-        """Speeds (T, N) m/s of what slides or turns against friction."""
+        """Speeds (T, N) m/s of the members that slide or turn against friction."""
         ...
 
 
@@ -31,9 +31,9 @@ KinksOf = TypeVar("KinksOf", covariant=True)
 
 @dataclass(frozen=True)
 class Kinks(Generic[AnyMotion]):
-    """Values of a measure at which a force is not smooth, the knots of a curve.
+    """Values of a measure at which a force is not smooth: the knots of a curve.
 
-    rate: whether they are values of the measure's rate instead.
+    rate: whether the knots are values of the measure's rate instead.
     """
 
     measure: Measure[AnyMotion]
@@ -42,11 +42,11 @@ class Kinks(Generic[AnyMotion]):
 
 
 class Unsmooth(Protocol[KinksOf]):
-    """A load: what this module asks of it. KinksOf: its kinks."""
+    """The part of a load that this module uses. KinksOf: type of its kinks."""
 
     @property
     def kinks(self) -> tuple[KinksOf, ...]:
-        """The values of its measures at which the load is not smooth."""
+        """Values of the load's measures at which the load is not smooth."""
         ...
 
     @property
@@ -58,7 +58,7 @@ class Unsmooth(Protocol[KinksOf]):
 def corners_of(course: Followed[R], loads: Sequence[Unsmooth[Kinks[R]]], nodes: Floats) -> Floats:
     """Times inside a course at which a drive, load or friction jumps or has a kink, (N,) s.
 
-    nodes: (T,) s, times between which speeds and measures are resolved.
+    nodes: (T,) s, increasing; speeds and measures are resolved between the first and the last.
     """
     every = [course.corners, _reversals(course, nodes), _kinks(course, loads, nodes)]
     at = np.unique(np.concatenate(every))
@@ -66,7 +66,7 @@ def corners_of(course: Followed[R], loads: Sequence[Unsmooth[Kinks[R]]], nodes: 
 
 
 def _reversals(course: Followed[R], nodes: Floats) -> Floats:
-    """Times at which something with friction reverses, (N,) s: its friction jumps there."""
+    """Times at which a sliding speed with friction reverses, so that friction jumps, (N,) s."""
     if not course.pace or not course.at(nodes[:1]).rubbing.shape[1]:
         return np.empty(0)
 

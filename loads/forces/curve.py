@@ -18,7 +18,7 @@ from pinbase.arrays import Floats
 Interpolation = Literal["linear", "monotone"]
 Outside = Literal["error", "hold", "repeat"]
 
-TABLE_END_TOLERANCE = 1e-9  # of the range: a value this little outside a table is at its end
+TABLE_END_TOLERANCE = 1e-9  # of the range: a value no farther outside a table counts as its end
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,13 @@ class ForceTable:
     """A table of y over x.
 
     x, y: (N,) rows, N >= 2, x increasing, SI units.
-    outside: beyond the rows, an error, the value of the nearest row ("hold"), or the table again
-    with the range of x as its period ("repeat").
-    name: of the table, for messages.
-    unit: of x in messages, with its SI value.
+    outside: beyond the rows the table gives an error, the value of the nearest row ("hold"), or
+    repeats itself with the range of x as its period ("repeat").
+    name: name of the table, for messages.
+    unit: unit of x in messages, with its SI value.
 
-    Raises: LinkageError for fewer rows, x that does not increase, or a jump where it repeats.
+    Raises: LinkageError for fewer rows, x that does not increase, or a jump where the table
+    repeats.
     """
 
     x: tuple[float, ...]
@@ -71,7 +72,7 @@ class ForceTable:
         return np.asarray(self._cubic(at))
 
     def knots(self, low: float, high: float) -> Floats:
-        """Values of x between `low` and `high` at which the curve has kinks: those of its rows."""
+        """Values of x between `low` and `high` at which the curve has kinks: the x of its rows."""
         x = np.array(self.x)
         if self.outside == "repeat":
             period = x[-1] - x[0]
@@ -80,7 +81,7 @@ class ForceTable:
         return x[(x > low) & (x < high)]
 
     def _require_inside(self, at: Floats) -> None:
-        """Raises: LinkageError where a value of x is outside the table."""
+        """Raise LinkageError where a value of x is outside the table."""
         low, high = self.x[0], self.x[-1]
         excess = np.maximum(low - at, at - high)
         k = int(excess.argmax())
@@ -103,7 +104,9 @@ class ForceTable:
         from scipy.interpolate import PchipInterpolator
 
         x, y = np.array(self.x), np.array(self.y)
-        if self.outside == "repeat":  # with a row of the neighbours, so that the slopes agree there
+        # A table that repeats gets one row of each neighbouring period, so that the slopes agree at
+        # the ends of the period.
+        if self.outside == "repeat":
             period = x[-1] - x[0]
             x = np.concatenate([x[-2:-1] - period, x, x[1:2] + period])
             y = np.concatenate([y[-2:-1], y, y[1:2]])

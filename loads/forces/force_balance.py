@@ -17,7 +17,10 @@ from pinbase.arrays import Complex, Floats
 
 
 class ForceBalance:
-    """The balance of forces of one motion, linear in the forces that the bodies require."""
+    """The balance of forces of one motion, linear in the forces that the bodies require.
+
+    hold: names of the sliders and turns that hold the linkage. rubs: whether friction acts.
+    """
 
     def __init__(
         self, motion: Motion, applied: tuple[Load, ...], hold: Sequence[str], rubs: bool
@@ -33,9 +36,10 @@ class ForceBalance:
         self.no_spread = np.zeros((len(motion), len(motion.linkage.teeth)))
 
     def _needs(self) -> tuple[Complex, Floats]:
-        """Required forces, m a - weight - applied force, and couples about the centres, (T, items).
+        """Forces and couples that joints and drives must exert on the items, (T, items) each.
 
-        Forces are in N, complex; couples in N m.
+        The force is m a - weight - applied forces, N, complex; the couple about the centre of mass
+        is I a - applied couples, N m.
         """
         motion = self.motion
         _, _, acceleration = motion.centres
@@ -56,7 +60,10 @@ class ForceBalance:
         return out
 
     def closing(self, f: Floats, spread: Floats | None = None) -> Complex:
-        """Forces (T, closing and teeth) N at the members that close loops, and at teeth."""
+        """Forces (T, closing and teeth) N at the members that close loops, and at teeth.
+
+        f: (T, rows) multipliers. spread: (T, teeth) N, radial forces of teeth.
+        """
         return self.loops.closing_forces(self.motion.pose, f, spread)
 
     def drives(self, f: Floats) -> Floats:
@@ -69,14 +76,15 @@ class ForceBalance:
         """Multipliers (T, rows) that balance generalised forces, by the sharing rules.
 
         generalised: (T, n) N (N m for angles).
-        needed: (T, items) N, the forces from which they come.
+        needed: (T, items) N, required forces from which the generalised forces follow.
         spread: (T, teeth) N, radial forces of teeth.
         """
         factors = self.held.factors
         f = factors.solve_transposed(generalised / self.loops.scale)
         if not self.shared:
             return f
-        # Null vectors of J^T are self-equilibrated: add them in the amounts that the rules demand.
+        # Null vectors of J^T are self-equilibrated sets of forces. The sharing rules determine the
+        # amounts in which they are added.
         null = factors.null
         no_forces = np.zeros((1, needed.shape[1]), dtype=complex)
         closing = [self.closing(null[:, :, i]) for i in range(null.shape[2])]

@@ -1,8 +1,9 @@
-"""Forces of the actuators that hold a linkage against its loads: drives, locks or stops.
+"""Forces of the drives, locks or stops that hold a linkage against its loads.
 
-Positions follow the drives. Forces follow from virtual work with a multiplier for every set of
-actuators: for a single actuator it is its force; several in parallel divide it by their areas
-(equal pressure), or by stiffness times displacement (springs on rigid links).
+Positions follow from the drives. Forces follow from virtual work with a multiplier for every set of
+actuators. The multiplier of a single actuator is its force. Several actuators in parallel divide
+the load in proportion to their areas (equal pressure), or to stiffness times displacement (springs
+on rigid links).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 from pinbase.errors import NumberInSI
 
-# Of the largest force: a stop that carries no more of the wrong sign carries nothing.
+# Relative to the largest force: a force of the wrong sign on a stop up to this size counts as zero.
 OPENING_FORCE_TOLERANCE = 1e-9
 
 
@@ -31,7 +32,7 @@ class Holding:
     """The A actuators that hold a linkage, in D sets.
 
     weights: (T, A, D) N (N m), force of each actuator per unit of each set's multiplier.
-    factors: those of the loop equations with a row for each set instead of each drive.
+    factors: factors of the loop equations with a row for each set instead of each drive.
     """
 
     actuators: tuple[Slider | Turn, ...]
@@ -39,16 +40,16 @@ class Holding:
     factors: Factors
 
     def forces(self, multipliers: Floats) -> Floats:
-        """Forces of the actuators, (T, A) N or N m. multipliers: (T, D) of the sets."""
+        """Forces of the actuators, (T, A) N or N m, from the multipliers (T, D) of the sets."""
         return np.asarray((self.weights @ multipliers[..., None])[..., 0])
 
 
 def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
-    """The actuators that hold the linkage, and how they divide its load.
+    """The actuators that hold the linkage, and the weights by which they divide its load.
 
     hold: names of sliders and turns; by default the drives and the actuators parallel to them.
 
-    Raises: LinkageError when these cannot hold the linkage, or are too many.
+    Raises: LinkageError when the actuators cannot hold the linkage, or their number is wrong.
     """
     linkage, loops = motion.linkage, motion.loops
     sets = actuator_sets(linkage.parallel, hold or linkage.driven, bool(hold))
@@ -65,7 +66,8 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
         return Holding(actuators, weights, motion.factors)
     if hold:
         require_count(motion.mobility.degrees, hold, len(sets))
-    # By virtual work, the row of a set is the sum of its actuators' rows, weighted by their forces.
+    # By virtual work, the row of a set is the sum of the rows of its actuators, each weighted by
+    # the actuator's force per unit of the multiplier.
     J = loops.jacobian(motion.pose)
     rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
     J[:, J.shape[1] - len(sets) :] = np.swapaxes(weights, 1, 2) @ rows
@@ -76,11 +78,11 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
 
 
 def locked(linkage: Linkage, hold: Sequence[str]) -> Linkage:
-    """A linkage without drives, in which the locks that hold it as drawn stand for them.
+    """A linkage without drives, in which the locks that hold it as drawn take the drives' place.
 
-    hold: names of sliders and turns; of several in parallel one stands for all.
+    hold: names of sliders and turns; the first of several in parallel becomes the drive.
 
-    Raises: LinkageError when these cannot hold the linkage, or are too many.
+    Raises: LinkageError when the locks cannot hold the linkage, or their number is wrong.
     """
     sets = actuator_sets(linkage.parallel, hold, True)
     freedom = mobility(linkage)
@@ -93,7 +95,7 @@ def locked(linkage: Linkage, hold: Sequence[str]) -> Linkage:
 
 
 def require_closed(held: Holding, forces: Floats) -> None:
-    """Raises: LinkageError when a stop would have to pull. forces: (T, A) N or N m."""
+    """Raise LinkageError when a stop would have to pull. forces: (T, A) N or N m."""
     for k, stop in enumerate(held.actuators):
         if isinstance(stop, Turn):
             least = OPENING_FORCE_TOLERANCE * float(np.abs(forces).max())
@@ -103,9 +105,11 @@ def require_closed(held: Holding, forces: Floats) -> None:
 def require_pressed(
     stop: str, carries: Sign, force: Floats, least: float, slides: bool = False
 ) -> None:
-    """Raises: LinkageError when a stop would have to pull.
+    """Raise LinkageError when a stop would have to pull.
 
-    force: (T,) N, or N m where it does not slide. least: of a force that counts.
+    stop: its name. carries: sign of the forces that it can carry.
+    force: (T,) N if the stop `slides`, otherwise N m.
+    least: smallest force or couple of the wrong sign that counts.
     """
     if carries == "both":
         return
@@ -126,10 +130,10 @@ def require_pressed(
 def actuator_sets(
     parallel: Sequence[Parallel], named: Sequence[str], hold: bool
 ) -> list[tuple[tuple[str, ...], Parallel | None]]:
-    """The sets of actuators that share a multiplier, each with its rule, or a single one without.
+    """The sets of actuators that share a multiplier, each with its rule; a single one has no rule.
 
-    named: the drives, or those that hold the linkage (`hold`). A rule applies only if all its
-    members do.
+    named: the drives, or if `hold`, the actuators that hold the linkage. For the latter a rule
+    applies only if all its members are named.
     """
     out: list[tuple[tuple[str, ...], Parallel | None]] = []
     done = set[str]()
@@ -145,14 +149,15 @@ def actuator_sets(
 
 
 def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel | None) -> Floats:
-    """Forces of a set's actuators per unit of its multiplier, (T, A), or (A,) for all instants."""
+    """Forces of a set's A actuators per unit of its multiplier, (T, A), or (A,) if constant."""
     loops = motion.loops
     if rule is None:
         return np.array([loops.unit(actuators[0])])
     shares = np.array(rule.shares) / max(rule.shares)
     if rule.by == "areas":
         return shares
-    # By stiffness: a spring's force is in proportion to its displacement per unit of the drive's.
+    # By stiffness: each force is in proportion to stiffness times the actuator's displacement per
+    # unit displacement of the drive.
     unit = np.zeros_like(motion.speeds)
     unit[:, next(k for k, d in enumerate(loops.linkage.drives) if d.name in rule.members)] = 1.0
     rates = motion.factors.solve(drive_side(loops, unit))
@@ -161,7 +166,7 @@ def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel 
 
 
 def require_count(degrees: int, hold: Sequence[str], count: int) -> None:
-    """Raises: LinkageError unless there are as many sets as degrees of freedom."""
+    """Raise LinkageError unless there are as many sets (`count`) as degrees of freedom."""
     if count > degrees:
         raise LinkageError(
             f"hold = {', '.join(hold)}: {count} for {degrees} degree(s) of freedom, and statics "
@@ -178,7 +183,10 @@ def require_count(degrees: int, hold: Sequence[str], count: int) -> None:
 
 
 def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
-    """The error of actuators that leave bodies free. J: (rows, n) at the instant where they do."""
+    """The error for actuators that leave bodies free.
+
+    J: (rows, n), Jacobian at an instant at which they do. names: names of the actuators.
+    """
     loops = motion.loops
     _, singular, right = np.linalg.svd(J)
     free = right[singular < RANK_TOLERANCE * singular[0]] / loops.scale
@@ -186,7 +194,7 @@ def _loose(motion: Motion, J: Floats, names: Sequence[str]) -> LinkageError:
 
 
 def cannot_hold(names: Sequence[str], bodies: Sequence[str]) -> LinkageError:
-    """The error of actuators that leave bodies free."""
+    """The error for actuators (`names`) that leave bodies free to move."""
     loose = ", ".join(bodies) or "it"
     return LinkageError(
         f"{', '.join(names)} cannot hold the mechanism in this position: {loose} can "

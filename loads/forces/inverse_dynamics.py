@@ -1,9 +1,9 @@
 """Newton-Euler equations of every body and pin, at all instants at once.
 
 By virtual work the few multipliers f of the loop and drive equations balance the forces that the
-bodies require, J^T f = partials . (m a - weight - applied); the forces in all members follow from
-them. With more equations than coordinates rigid-body statics leaves the forces along the null
-vectors of J^T undetermined; the linkage's sharing rule determines them.
+bodies require, J^T f = partials . (m a - weight - applied). The forces in all members follow from
+these multipliers. If there are more equations than coordinates, rigid-body statics leaves the
+forces along the null vectors of J^T undetermined; the linkage's sharing rule determines them.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class SliderForces:
 class Dynamics:
     """Reactions, with the forces of the drives and the loads.
 
-    actuators: the A actuators that hold the linkage, its drives first.
+    actuators: the A actuators that hold the linkage.
     drive: (T, A) forces, N, positive where they extend a slider; torques, N m, counter-clockwise.
     applied: the loads.
     sliders: forces in the sliders.
@@ -74,9 +74,9 @@ class Dynamics:
         return side_by_side([self.motion.coordinate(a) for a in self.actuators], len(self.motion))
 
     def shaking(self, about: Point) -> tuple[Floats, Floats]:
-        """Shaking force (T, 2) N and moment (T,) N m of the linkage and its springs on its ground.
+        """Shaking force (T, 2) N and moment (T,) N m of the linkage and its springs on the ground.
 
-        about: the point of the moment, m.
+        about: point about which the moment is taken, m.
         """
         centres, _, _ = self.motion.centres
         moment = -(self.couples + cross(centres - number(about), self.needed)).sum(axis=1)
@@ -102,13 +102,13 @@ def motion_reactions(
 ) -> Dynamics:
     """Reactions of a driven motion under gravity, applied loads and friction.
 
-    case: name, for messages.
+    case: name of the load case, for messages.
     timed: whether the instants follow each other in time.
     hold: names of the sliders and turns that hold the linkage, by default its drives.
     friction: whether friction acts.
 
-    Raises: LinkageError when connections share forces without a rule or the linkage is not held;
-    JammingError.
+    Raises: LinkageError when connections share forces without a rule, or when the linkage is
+    unconstrained; JammingError when friction jams.
     """
     loads = tuple(applied)
     solved = (
@@ -121,9 +121,10 @@ def motion_reactions(
 
 
 def _dynamics(balance: ForceBalance, case: str, timed: bool) -> Dynamics:
-    """Reactions and drive forces; `case` and `timed` as of `motion_reactions`."""
+    """Reactions and drive forces of a batch of instants; case, timed: as for `motion_reactions`."""
     linkage = balance.motion.linkage
-    # Without friction and radial forces of teeth; these are added in proportion to contacts.
+    # First without friction and radial forces of teeth, which are then added in proportion to the
+    # contact forces.
     f = balance.multipliers(balance.generalised(balance.needed, balance.couples), balance.needed)
     sizes = (len(linkage.sliders), len(linkage.connections), len(linkage.teeth))
     friction, on_pins, spread = (np.zeros((len(f), n)) for n in sizes)
@@ -152,12 +153,12 @@ def _dynamics(balance: ForceBalance, case: str, timed: bool) -> Dynamics:
 
 
 def _reactions(balance: ForceBalance, case: str, closing: Complex, timed: bool) -> Reactions:
-    """Forces of the bodies on the pins, from those at closures and teeth."""
+    """Forces of the bodies on the pins, from the forces `closing` at closures and teeth."""
     motion, linkage = balance.motion, balance.motion.linkage
     on_body = balance.everywhere(balance.needed, closing)
     on_pin = np.zeros((*on_body.shape, 3))
     on_pin[..., 0], on_pin[..., 1] = -on_body.real, -on_body.imag
-    # A pin's own axes turn with what it is fixed in; those of a floating pin are the world's.
+    # The axes of a pin turn with the item in which it is fixed; a floating pin has world axes.
     carriers = [j.fixed_in or GROUND for j, _ in linkage.connections]
     carriers += [t.carrier for t in linkage.teeth]
     turn = np.stack([motion.angle(item) for item in carriers], axis=1)

@@ -1,4 +1,4 @@
-"""Quantities on which a force can depend: time, a slider's or turn's position, a distance."""
+"""Quantities on which a force can depend, as time, a slider's or turn's position, or a distance."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AnyMotion = TypeVar("AnyMotion", contravariant=True)  # a Motion or SpaceMotion
 
 
 class Measure(Protocol[AnyMotion]):
-    """A quantity of a motion; called, it gives value and rate at every instant, (T,) each, SI."""
+    """A quantity of a motion: a call returns value and rate at every instant, (T,) each, in SI."""
 
     def __call__(self, motion: AnyMotion) -> tuple[Floats, Floats]: ...
 
@@ -46,7 +46,7 @@ class Position:
 class Distance:
     """Distance between two points, each of an item or the ground, m.
 
-    points: as drawn, m.
+    points: the two points as drawn, m.
     """
 
     items: tuple[str, str]

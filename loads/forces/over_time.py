@@ -17,12 +17,14 @@ from loads.motion.refine import Resolved, resolved
 from loads.motion.transmission_angles import transmission_angles
 from pinbase.arrays import Floats
 
-# Of the largest force, times length scale or speed: the unit of a drive of smaller force or power.
-# Resolved to 1e-12 of its unit (motion.refine), the round-off of a balanced drive counts as zero.
+# The least unit of a drive's force and power, relative to the largest force times the length scale
+# (m, at least 1) and times the pace. Quantities are resolved to 1e-12 of their unit at the finest
+# (motion.refine), so that the round-off of a balanced drive counts as zero.
 MIN_DRIVE_SHARE = 1e-2
-MEAN_ROUND_OFF = 1e-8  # of the largest: a mean below it is zero
-# Of a maximum: where the value solved at its instant is this close to the interpolated one, the
-# solved one is reported. It differs where the quantity jumps, and the maximum is a one-sided limit.
+MEAN_ROUND_OFF = 1e-8  # relative to the largest magnitude: a smaller mean counts as zero
+# Relative to a maximum: where the value solved at its instant is this close to the interpolated
+# value, the solved value is reported. Both differ where the quantity jumps; the maximum is then a
+# one-sided limit, and the interpolated value is reported.
 AGREEMENT_TOLERANCE = 1e-5
 
 Angles = dict[tuple[str, str], Floats]
@@ -41,11 +43,11 @@ class Extremum:
 class Effort:
     """Force (N) or torque (N m) of a drive over a time, with its power and work.
 
-    largest: largest magnitude.
-    mean, rms: over time.
-    power: largest magnitude, W.
-    stroke: difference of its extreme positions, m or rad.
-    work: (T,) J, done up to each sample.
+    largest: largest magnitude of the force.
+    mean, rms: mean and root mean square of the force over time.
+    power: largest magnitude of the power, W.
+    stroke: difference of the drive's extreme positions, m or rad.
+    work: (T,) J, work done up to each sample.
     """
 
     largest: Extremum
@@ -60,8 +62,8 @@ class Effort:
 class PeakForces:
     """Largest force and moment of every connection over a time.
 
-    force, moment: magnitudes, N and N m, by connection.
-    vector: (3,) N, the largest force by connection, world axes.
+    force, moment: largest magnitudes, N and N m, by connection.
+    vector: the largest force, (3,) N, in world axes, by connection.
     unresolved: (J, 2) s, intervals in which the quantities are not resolved.
     """
 
@@ -73,9 +75,10 @@ class PeakForces:
 
 @dataclass(frozen=True)
 class OverTime:
-    """Results for a motion as a whole.
+    """Results over the whole time of a motion.
 
-    drives: in the linkage's order.
+    peaks: largest forces of every connection.
+    drives: force, power and work of every actuator, in the order of `Dynamics.actuators`.
     transmission: smallest transmission angle (rad) by link and joint.
     condition: largest condition number.
     violation: largest relative violation of the power balance at any solved instant.
@@ -94,7 +97,7 @@ def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForce
     """The largest force and moment of every connection from the first to the last of the samples.
 
     samples: (T,) s, increasing.
-    at: gives the reactions at times (T,) s of the same motion; they must not jump.
+    at: function that returns the reactions at times (T,) s of the same motion; they must not jump.
     """
     first = at(samples)
     forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
@@ -113,8 +116,8 @@ def peaks(components: Resolved, at: Callable[[Floats], Reactions], unit: list[fl
     """Largest forces and moments from their components over time.
 
     components: columns fx, fy, fz of every connection, then mx, my, mz, over their units.
-    at: gives the reactions at times (T,) s.
-    unit: of forces and of moments, N and N m; one only: there are no moments.
+    at: function that returns the reactions at times (T,) s.
+    unit: units of forces and of moments, N and N m; a single unit if there are no moments.
     """
     names = at(components.ends[:1]).connections
     count = len(names)
@@ -124,7 +127,7 @@ def peaks(components: Resolved, at: Callable[[Floats], Reactions], unit: list[fl
         return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
 
     best, when = components.largest(sizes)
-    # Compare the interpolated maximum with the solution at its instant: they differ at a jump only.
+    # Compare the interpolated maximum with the solution at its instant: both differ only at a jump.
     solved = at(when)
     both = zip((solved.forces, solved.moments), unit, strict=False)
     vectors = np.concatenate([vector / size for vector, size in both], axis=1)
@@ -151,11 +154,11 @@ def peaks(components: Resolved, at: Callable[[Floats], Reactions], unit: list[fl
 
 @dataclass(frozen=True)
 class _Dense:
-    """Forces of a motion, resolved in time: polynomials give them at all instants.
+    """Forces of a motion, resolved in time by piecewise polynomials.
 
-    quantities: of all connections fx, fy, fz, then drive forces, then drive powers, divided by the
-    next three.
-    forces: unit of forces, N.
+    quantities: fx, fy, fz of all connections, then drive forces, then drive powers, each divided by
+    its unit below.
+    forces: unit of the forces at connections, N.
     effort, power: (D,) units of the drives' forces (N) or torques (N m) and of their powers (W).
     corners: times at which something may jump, s.
     """
@@ -170,16 +173,19 @@ class _Dense:
 def require_possible(
     course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics
 ) -> None:
-    """Raises: as `solve`, also where it fails between the samples; arguments as of `over_time`."""
+    """Raise an error of `solve` wherever it fails, also between the samples.
+
+    course, solve, samples: as for `over_time`.
+    """
     solve(_dense(course, solve, samples).quantities.nodes)
 
 
 def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> OverTime:
     """Extremes and means of a motion over the time of its samples.
 
-    solve: gives the dynamics at times (T,) s of that course.
+    solve: function that returns the dynamics at times (T,) s of the course.
 
-    Raises: as `solve`, also where it fails between the samples.
+    Raises: the errors of `solve`, also where it fails between the samples.
     """
     d = _dense(course, solve, samples)
     largest = peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
@@ -203,7 +209,8 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
 
 def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> _Dense:
     """The forces of a motion, resolved between its samples."""
-    # Units from the samples and the nodes of the path, so that tolerances are of the largest.
+    # Units come from the samples and the nodes of the path, so that tolerances are relative to the
+    # largest values of both.
     first = (samples, solve(course.path.nodes))
     forces = max(float(np.abs(d.reactions.forces).max()) for d in first) or 1.0
     scale = course.loops.linkage.length_scale
@@ -238,7 +245,7 @@ def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamic
 class DriveHistory:
     """Forces and powers of D drives, resolved in time.
 
-    quantities: its last 2 D columns are the forces, then the powers, divided by the next two.
+    quantities: the last 2 D columns are forces, then powers, divided by their units below.
     effort, power: (D,) units of forces (N) or torques (N m) and of powers (W).
     """
 
@@ -252,13 +259,14 @@ def efforts(
 ) -> tuple[Effort, ...]:
     """Force, power and work of every drive.
 
-    solve: gives the forces (T, D) of the drives at times (T,) s.
+    history: forces and powers of the drives over time.
+    solve: function that returns the forces (T, D) of the drives at times (T,) s.
     samples: (T,) s, times up to which work is integrated.
-    strokes: (D,) m or rad.
+    strokes: (D,) strokes of the drives, m or rad.
     """
     effort, power = history.effort, history.power
     D = len(effort)
-    if not D:  # of a structure
+    if not D:  # a structure has no drives
         return ()
     drives = history.quantities.quantities(slice(-2 * D, None))
 
@@ -295,8 +303,8 @@ def lowest_angles(
     """Smallest transmission angles by link and joint, and the largest condition number.
 
     times: (T,) s, as dense as the forces require.
-    angles: transmission angles (T,) rad, by link and joint.
-    condition: condition numbers (T,); None: they are not wanted.
+    angles: function that returns transmission angles (T,) rad by link and joint.
+    condition: function that returns condition numbers (T,); None if they are not wanted.
     """
     dense = course.at(times)
     keys = [k for k, v in angles(dense).items() if np.isfinite(v).any()]

@@ -12,7 +12,7 @@ from loads.motion.complex_points import number
 from loads.motion.motion import Motion
 from pinbase.arrays import Floats
 
-MIN_POWER_SHARE = 1e-6  # of the largest force times the largest speed: less power is round-off
+MIN_POWER_SHARE = 1e-6  # of the largest force times the pace: a smaller power is round-off
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ def energy(motion: Motion) -> Energy:
 class Ledger:
     """Powers supplied to a linkage and the rate of its kinetic energy, (T,) W each.
 
-    applied: loads, springs and dampers.
-    min_power: W, below which powers are round-off.
+    applied: power of loads, springs and dampers.
+    min_power: power below which powers are round-off, W.
     """
 
     drives: Floats
@@ -50,7 +50,7 @@ class Ledger:
 
     @property
     def violation(self) -> float:
-        """Largest difference of power supplied and kinetic rate, over the largest power."""
+        """Largest difference of power supplied and kinetic rate, relative to the largest power."""
         terms = (self.drives, self.gravity, self.applied, self.friction, self.kinetic_rate)
         largest = max(self.min_power, *(float(np.abs(t).max(initial=0.0)) for t in terms))
         gap = self.drives + self.gravity + self.applied + self.friction - self.kinetic_rate

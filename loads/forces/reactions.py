@@ -1,4 +1,4 @@
-"""Reactions: the force of each body on its pin at every instant; computed, stated or tabulated."""
+"""The force of each body on its pin at every instant, computed, stated or tabulated."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from loads.tables.force_columns import Layout, Unit
 from loads.tables.force_table import TabledForces, read_forces
 from pinbase.arrays import Floats, Ints
 
-TIME_TOLERANCE = 1e-9  # of the largest time: files of one run state times with 9 digits or more
+TIME_TOLERANCE = 1e-9  # of the largest time: files of one run state times to 9 digits or more
 Components = dict[str, tuple[float, ...]]
 
 
@@ -22,14 +22,15 @@ Components = dict[str, tuple[float, ...]]
 class Reactions:
     """Forces and moments of the bodies on the pins, at T instants and C connections.
 
-    case: name of the case.
+    case: name of the load case.
     times: (T,) s, or None for a case without time (T = 1).
-    connections, bodies: C names; of the body at each connection.
+    connections: (C,) names of the connections.
+    bodies: (C,) name of the body at each connection.
     forces, moments: (T, C, 3) N and N m, world axes.
-    turn: rotation of the pin's axes against the world's: (T, C) rad about z, of a linkage in the
-    plane; (T, C, 3, 3), the pin's axes in world axes as columns, of one in space.
+    turn: rotation of the pin's axes relative to the world: for a planar linkage (T, C) rad about z;
+    for a linkage in space (T, C, 3, 3), the pin's axes in world axes as columns.
 
-    Raises: ArithmeticError where something is not finite.
+    Raises: ArithmeticError where a force, moment or rotation is not finite.
     """
 
     case: str
@@ -49,7 +50,7 @@ class Reactions:
         return len(self.forces)
 
     def at(self, rows: Ints) -> Reactions:
-        """The same at some of the instants."""
+        """The reactions at some of the instants. rows: indices of the instants."""
         arrays = (self.forces[rows], self.moments[rows], self.turn[rows])
         times = None if self.times is None else self.times[rows]
         return Reactions(self.case, times, self.connections, self.bodies, *arrays)
@@ -82,10 +83,10 @@ class Reactions:
 
 
 def joined(parts: Sequence[Any]) -> Any:
-    """One result from those of successive instants.
+    """One result from the results of successive batches of instants.
 
-    Arrays are joined along time, also those inside dataclasses and dicts; anything else is the same
-    in all.
+    Arrays are joined along time, also inside dataclasses and dicts; any other value is taken from
+    the first batch, because it is the same in all.
     """
     first: Any = parts[0]
     if all(part is first for part in parts):
@@ -103,7 +104,8 @@ def joined(parts: Sequence[Any]) -> Any:
 def given_reactions(case: str, forces: Components, moments: Components | None = None) -> Reactions:
     """Reactions at a single instant, from stated forces and moments.
 
-    forces, moments: (x, y[, z]) by connection, in the pin's axes, N and N m; zero where not stated.
+    forces, moments: components (x, y[, z]) by connection, in the pin's axes, N and N m; zero where
+    not stated.
     """
     moments = moments or {}
     names = tuple(dict.fromkeys((*forces, *moments)))
@@ -125,10 +127,10 @@ def given_reactions(case: str, forces: Components, moments: Components | None = 
 def read_reactions(path: Path, layout: Layout, unit: Unit, known: set[str]) -> Reactions:
     """Reactions from a table of forces on pins, in the pins' axes.
 
-    unit: gives the SI value of a unit.
-    known: the connections of the study.
+    unit: function that returns the SI value of a unit.
+    known: names of the connections of the study.
 
-    Raises: TableError; also where a connection has no row at one of the times.
+    Raises: TableError for a faulty table; also where a connection has no row at one of the times.
     """
     table = read_forces(path, layout, unit, known)
     return _tabled(layout.case, table)
@@ -139,10 +141,11 @@ def tabled_reactions(
 ) -> Reactions:
     """Reactions of a case from one or several tables, each with some of the connections.
 
-    files: paths and layouts.
-    unit, known: as of `read_reactions`.
+    files: path and layout of each table.
+    unit, known: as for `read_reactions`.
 
-    Raises: TableError; also where a connection is in two tables, or the times differ.
+    Raises: TableError for a faulty table; also where a connection is in two tables, or the times
+    differ.
     """
     tables = [(path, read_forces(path, layout, unit, known)) for path, layout in files]
     (first_path, first), *others = tables
@@ -167,7 +170,7 @@ def tabled_reactions(
 
 
 def same_times(times: Floats | None, others: Floats | None) -> bool:
-    """Whether two tables have the same times (T,) s, to rounding."""
+    """Whether two tables have the same times (T,) s, except for rounding."""
     if times is None or others is None:
         return times is others
     near = TIME_TOLERANCE * float(np.abs(times).max())

@@ -13,8 +13,9 @@ from pinbase.arrays import Complex, Floats
 
 
 def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
-    """The error of connections whose forces rigid-body statics leaves open, without a rule, or of
-    sliders, for which there is none.
+    """The error for forces that rigid-body statics leaves undetermined.
+
+    It asks for a sharing rule of the connections; there is no such rule for redundant sliders.
     """
     if not set(freedom.shared) & {name for name, _ in linkage.forces}:
         text = (
@@ -44,7 +45,7 @@ def undetermined(linkage: Linkage, freedom: Mobility) -> LinkageError:
 def _joined_twice(
     linkage: Linkage, shared: tuple[str, ...]
 ) -> Iterator[tuple[tuple[str, str], list[str]]]:
-    """Pairs of bodies that several pins join, and the pins, of which some connection is shared."""
+    """Pairs of bodies that several pins with shared connections join, and the names of the pins."""
     pins: dict[tuple[str, str], list[str]] = {}
     for joint in linkage.joints:
         bodies = [
@@ -62,11 +63,11 @@ def _open(freedom: Mobility) -> str:
 
 
 def shares(linkage: Linkage, forces: Complex, loose: Complex, freedom: Mobility) -> Floats:
-    """Amounts (T, k) of self-equilibrated forces that make connections share as springs do.
+    """Amounts (T, k) of self-equilibrated forces with which connections share loads as springs do.
 
     They minimise the sum of force^2 / stiffness over the connections and teeth of the rules.
-    forces: (T, C) N, complex, without self-equilibrated ones.
-    loose: (T, C, k) N, the k self-equilibrated sets of forces.
+    forces: (T, C) N, complex, any forces in equilibrium with the loads.
+    loose: (T, C, k) N, complex, the k self-equilibrated sets of forces.
     freedom: mobility of the linkage, which names the connections whose force is undetermined.
 
     Raises: LinkageError without a rule, or with rules that leave a force undetermined.

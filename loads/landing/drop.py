@@ -1,10 +1,10 @@
-"""The drop of one leg: a sprung and an unsprung mass, a strut, a tyre and a wheel.
+"""The drop of one leg with a sprung and an unsprung mass, a strut, a tyre and a wheel.
 
 Downwards is positive. z2, the distance that the axle has fallen since touch-down, is the deflection
 of the tyre; u is the rise of the axle relative to the aircraft. The strut is at rest (extended
-until its preload is overcome, or stuck by friction) or moves in one direction; the tyre touches the
-ground or not; the wheel slides in one direction or rolls. Integration restarts at every change of
-these.
+until its preload is overcome, or stuck by friction) or moves in one direction. The tyre touches the
+ground or not. The wheel slides in one direction or rolls. Integration restarts whenever one of
+these states changes.
 
 Source: B. Milwitzky, F. E. Cook, NACA TR 1154 (1953), for the form of the equations.
 """
@@ -25,11 +25,12 @@ from pinbase.arrays import Floats
 from pinbase.errors import CodedError, NumberInSI
 
 RELATIVE_TOLERANCE = 1e-11
-ABSOLUTE_TOLERANCE = 1e-13  # of the scale of each variable
-# Of the time left: an event's function that begins at zero must have left it after the first step.
+ABSOLUTE_TOLERANCE = 1e-13  # relative to the scale of each variable
+# First integration step, relative to the remaining time. After it an event function that begins at
+# zero must no longer be zero.
 FIRST_STEP_SHARE = 1e-7
-MIN_STEPS = 200  # in the duration, so that no event is missed within one
-MAX_SPANS = 500  # between changes of mode
+MIN_STEPS = 200  # steps in the duration, so that no event is missed within a step
+MAX_SPANS = 500  # largest number of phases between changes of mode
 Method = Literal["DOP853", "Radau"]
 STATE_ROWS = (
     TYRE_DEFLECTION,
@@ -57,12 +58,12 @@ class Drop:
     """One leg and the mass that falls on it.
 
     sprung, unsprung: masses, kg.
-    velocity: of descent at touch-down, m/s.
-    tyre, strut, wheel: without a strut the leg is rigid, without a wheel there is no drag.
-    lift: as a fraction of the weight.
+    velocity: descent velocity at touch-down, m/s.
+    tyre, strut, wheel: without a strut the leg is rigid; without a wheel there is no drag.
+    lift: lift as a fraction of the weight.
     gravity: m/s^2.
-    duration: of the drop from touch-down on, s.
-    travel: relation of the strut's stroke and the rise of the axle.
+    duration: time from touch-down to the end of the drop, s.
+    travel: relation between the strut's stroke and the rise of the axle.
     """
 
     sprung: float
@@ -103,14 +104,15 @@ class Mode:
 
 @dataclass(frozen=True)
 class DropForces:
-    """Forces and accelerations at T states, (T,) each; downwards positive but for `vertical`.
+    """Forces and accelerations at T states, (T,) each.
 
-    vertical, drag: of the ground on the tyre, upwards and aft, N.
-    at_wheel, along: of the strut, at the wheel and along the strut, N.
+    vertical, drag: forces of the ground on the tyre, upwards and aft, N.
+    at_wheel, along: force of the strut, reduced to the wheel and along the strut, positive in
+    compression, N.
     on_leg: drag that the leg passes on to the aircraft, N.
-    sprung, unsprung: accelerations of the two masses, m/s^2.
-    stroke, speed: of the strut, m and m/s.
-    lever: stroke per rise of the axle.
+    sprung, unsprung: accelerations of the two masses, positive downwards, m/s^2.
+    stroke, speed: stroke of the strut and its rate, m and m/s.
+    lever: derivative of the stroke by the rise of the axle.
     """
 
     vertical: Floats
@@ -132,7 +134,7 @@ def forces(d: Drop, y: Floats, mode: Mode) -> DropForces:
     speed = lever * y[WHEEL_TRAVEL_RATE]
     common = d.gravity * (1.0 - d.lift) - vertical / d.mass
     if d.strut is None or mode.strut == 0:
-        # Both masses fall as one; the strut carries whatever that requires.
+        # Both masses fall as one body; the strut carries the force that this requires.
         sprung = unsprung = common
         at_wheel = d.sprung * (d.gravity - common) - d.lift * d.weight
         along = at_wheel / lever
@@ -189,7 +191,8 @@ Event = tuple[str, int, Callable[[Floats], float]]
 def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
     """The events that may end a mode.
 
-    Each is a name, the direction of the change of sign, and the function of the state that has it.
+    Each event has a name, the direction of its change of sign, and the function of the state whose
+    sign changes.
     """
     out: list[Event] = [("tyre", -1 if mode.touches else 1, lambda y: y[TYRE_DEFLECTION])]
     if np.isfinite(d.tyre.max_deflection):
@@ -221,7 +224,7 @@ def _events(d: Drop, mode: Mode, y: Floats) -> list[Event]:
 
 
 def _beyond_grip(d: Drop, y: Floats, mode: Mode) -> float:
-    """Drag that rolling requires beyond what friction can supply, N."""
+    """Drag that rolling requires in excess of the friction available, N."""
     assert d.wheel is not None
     f = forces(d, y, replace(mode, wheel=0))
     return float(np.abs(f.drag) - d.wheel.friction * f.vertical)
@@ -236,7 +239,7 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
     if event in ("rolls", "slides"):
         return y, replace(mode, wheel=_wheel(d, y, mode, event))
     if event == "extended":
-        # A perfectly plastic impact at the stop: both masses go on at their common velocity.
+        # Perfectly plastic impact at the stop: afterwards both masses have a common velocity.
         velocity = (
             d.sprung * (y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]) + d.unsprung * y[DEFLECTION_RATE]
         ) / d.mass
@@ -249,8 +252,8 @@ def _after(d: Drop, event: str, y: Floats, mode: Mode) -> tuple[Floats, Mode]:
         direction = 1 if abs(holding_force - high) <= abs(holding_force - low) else -1
     else:
         direction = (holding_force > high) - (holding_force < low)
-    # A strut that came to rest cannot go on in the same direction: where the forces say so, its
-    # motion before was shorter than the first step, and its direction is the opposite.
+    # A strut that has come to rest cannot continue in the same direction. Where the forces say that
+    # it does, its motion was shorter than the first step, and it moves in the opposite direction.
     reverses = event == "turns" and direction == mode.strut
     return y, replace(mode, strut=-direction if reverses else direction)
 
@@ -262,7 +265,7 @@ def _slides(d: Drop, y: Floats) -> int:
 
 
 def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
-    """Mode of the wheel after an event: it rolls only if friction suffices."""
+    """Mode of the wheel after the event "rolls" or "slides": it rolls only if friction suffices."""
     if event == "rolls" and _beyond_grip(d, y, mode) <= 0.0:
         return 0
     return 1 if float(forces(d, y, replace(mode, wheel=0)).drag) >= 0.0 else -1
@@ -272,9 +275,9 @@ def _wheel(d: Drop, y: Floats, mode: Mode, event: str) -> int:
 class DropPhase:
     """The part of a drop between two changes of mode.
 
-    first, last: times, s.
-    state: gives the states (STATE_ROWS, T) at times (T,) s in it.
-    event: name of the event that ends it; "end": the end of the drop.
+    first, last: times at which the phase begins and ends, s.
+    state: function that returns the states (STATE_ROWS, T) at times (T,) s of the phase.
+    event: name of the event that ends the phase; "end" at the end of the drop.
     """
 
     first: float
@@ -361,9 +364,11 @@ def _terminal(direction: int, of: Callable[[Floats], float]) -> Any:
 
 
 def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> LandingError:
-    """The error of a strut or tyre that is exceeded, with the energy that remains."""
+    """The error for a strut that bottoms, with the remaining energy, or a tyre beyond its table."""
     f = forces(d, y, mode)
-    left = 0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
+    remaining = (
+        0.5 * d.mass * float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE] * d.sprung / d.mass) ** 2
+    )
     sinking = NumberInSI(float(y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]), "velocity")
     where = f"{time:.4g} s after touch-down, the aircraft still sinking at "
     if event == "bottoms":
@@ -374,7 +379,7 @@ def _destroyed(d: Drop, event: str, time: float, y: Floats, mode: Mode) -> Landi
                 f" {where}",
                 sinking,
                 " (about ",
-                NumberInSI(left, "energy"),
+                NumberInSI(remaining, "energy"),
                 " are left): a longer stroke, a higher gas pressure or a smaller orifice is needed",
             ],
             "strut-bottoms",

@@ -1,4 +1,4 @@
-"""The forces of the ground on a wheel that are parts of a reference load."""
+"""Forces of the ground on a wheel, as fractions of a reference load."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ class WheelForce:
     """A component of the force of the ground on a wheel.
 
     component: "vertical", "drag" or "side".
-    factor: over the reference load, not negative.
-    reference: N.
-    towards: its direction in words.
+    factor: ratio of the component to the reference load, not negative.
+    reference: reference load, N.
+    towards: direction of the component in words.
     direction: unit vector, world axes.
-    place: where it acts, at the axle or at the ground contact.
-    arm: from the axle to that point, m, world axes.
+    place: point of action, AXLE or CONTACT.
+    arm: vector from the axle to the point of action, m, world axes.
     """
 
     component: str
@@ -52,10 +52,10 @@ class WheelForce:
 class GroundedWheel:
     """A wheel on the ground.
 
-    up, aft: unit vectors at a right angle, world axes.
-    leg: on which side of the aircraft it is: "left", "right" or "nose".
-    radius: of the loaded tyre, m; None: all forces act at the axle.
-    braked: whether it cannot turn, so that drag acts at the ground contact.
+    up, aft: perpendicular unit vectors, world axes.
+    leg: position of the leg on the aircraft: "left", "right" or "nose".
+    radius: radius of the loaded tyre, m; with None all forces act at the axle.
+    braked: whether the wheel cannot turn, so that drag acts at the ground contact.
     """
 
     up: Vector
@@ -65,9 +65,9 @@ class GroundedWheel:
     braked: bool = False
 
     def sideways(self, towards: Side) -> Vector:
-        """The unit vector across the direction of travel towards a side.
+        """The unit vector across the direction of travel, towards a side.
 
-        The pilot's left is aft x up.
+        The vector to the pilot's left is aft x up.
         """
         opposite = {"left": "right", "right": "left"}
         inboard = {"inboard": opposite.get(self.leg, ""), "outboard": self.leg}
@@ -76,20 +76,20 @@ class GroundedWheel:
         return x, y, z
 
     def forces(self, rule: GroundRule, reference: float, towards: Side) -> tuple[WheelForce, ...]:
-        """The components that a rule demands, without those that are zero.
+        """The nonzero components that a rule prescribes.
 
-        reference: load of which they are parts, N.
-        towards: side to which the side load acts.
+        reference: reference load of the rule, N.
+        towards: side towards which the side load acts.
         """
         up, drag = self.up, self.aft if rule.drag >= 0.0 else _scaled(self.aft, -1.0)
         contact: tuple[str, Vector] = (AXLE, (0.0, 0.0, 0.0))
         if self.radius is not None:
             contact = CONTACT, _scaled(up, -self.radius)
-        of_drag = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
+        drag_place = contact if self.braked else (AXLE, (0.0, 0.0, 0.0))
         forces = (
             WheelForce("vertical", rule.vertical, reference, "up", up, *contact),
             WheelForce("drag", abs(rule.drag), reference, "aft" if rule.drag > 0.0 else "forward",
-                       drag, *of_drag),
+                       drag, *drag_place),
             WheelForce("side", rule.side, reference, towards, self.sideways(towards), *contact),
         )  # fmt: skip
         return tuple(force for force in forces if force.factor)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-# Peak force over mean force of a pulse, for the same impulse in the same time.
+# Ratio of peak force to mean force of a pulse, for the same impulse in the same time.
 PULSE_PEAK_RATIOS = {"rectangular": 1.0, "half-sine": math.pi / 2.0, "triangular": 2.0}
 
 
@@ -14,7 +14,7 @@ def impulse_force(
     """Largest force (N) of a pulse that changes the velocity of a mass.
 
     It is the mean force, m dV / dt, times the ratio of the pulse's peak to its mean.
-    mass, velocity_change, impulse_time: kg, m/s and s.
+    mass, velocity_change, impulse_time: m, dV and dt, in kg, m/s and s.
     pulse: a shape in PULSE_PEAK_RATIOS.
 
     Source: any text on impulse and momentum; Grenier (2008), eq. L2, for the rectangular pulse.

@@ -1,4 +1,4 @@
-"""The history of a drop: forces, motion and energies at any time, and their largest values."""
+"""Forces, motion and energies of a drop at any time, and their largest values."""
 
 from __future__ import annotations
 
@@ -40,9 +40,10 @@ PEAK_NAMES = ("vertical", "along", "stroke", "deflection", "drag", "on_leg", "sp
 class LandingEnergies:
     """Energies of a drop, (T,) J each.
 
-    kinetic .. bending: stored in the masses, the strut's spring, the tyre and the bent leg.
-    oil .. slip: dissipated by orifice, strut friction, impact at the stop, tyre and sliding.
-    lift: work taken by lift.
+    kinetic .. bending: energy stored in the masses, the strut's spring, the tyre and the bent leg.
+    oil .. slip: energy dissipated by orifice, strut friction, impact at the stop, tyre damping, and
+    sliding with the damping of the bending leg.
+    lift: energy taken away by lift.
     runway: work done by the ground that passes under the wheel.
     """
 
@@ -61,7 +62,7 @@ class LandingEnergies:
 
     @property
     def imbalance(self) -> Floats:
-        """Change of the total energy, which should be zero, over the first kinetic energy, (T,)."""
+        """Error of the energy balance over the initial kinetic energy, (T,); ideally zero."""
         stored = self.kinetic + self.potential + self.spring + self.tyre + self.bending
         lost = self.oil + self.friction + self.stop + self.tyre_damping + self.slip + self.lift
         return np.asarray((stored + lost - self.runway - self.kinetic[0]) / self.kinetic[0])
@@ -71,10 +72,10 @@ class LandingEnergies:
 class LandingHistory:
     """A drop at T instants, (T,) each, SI units.
 
-    deflection: of the tyre, m.
-    rise, rise_rate: of the axle relative to the aircraft, m and m/s.
-    sink_velocity: of the sprung mass, downwards, m/s.
-    spin: of the wheel, rad/s.
+    deflection: deflection of the tyre, m.
+    rise, rise_rate: rise of the axle relative to the aircraft, m, and its rate, m/s.
+    sink_velocity: velocity of the sprung mass, downwards, m/s.
+    spin: angular velocity of the wheel, rad/s.
     """
 
     times: Floats
@@ -89,7 +90,7 @@ class LandingHistory:
 
 @dataclass(frozen=True)
 class Landing:
-    """A drop with its history, from `land`. spans: its phases."""
+    """A drop with its history, made by `land`. spans: phases of the drop."""
 
     drop: Drop
     spans: tuple[DropPhase, ...]
@@ -104,7 +105,11 @@ class Landing:
         return tuple(span.last for span in self.spans if span.event == name)
 
     def at(self, times: Floats) -> LandingHistory:
-        """The drop at times (T,) s; outside it as at its ends, at a change of mode as before it."""
+        """The history of the drop at times (T,) s.
+
+        Times outside the drop have the values at its nearer end; a change of mode has the values
+        just before it.
+        """
         d, inside = self.drop, np.clip(times, 0.0, self.spans[-1].last)
         phase = np.searchsorted([span.last for span in self.spans], inside)
         y, histories = np.empty((len(STATE_ROWS), len(times))), dict[str, Floats]()
@@ -127,9 +132,9 @@ class Landing:
 
     @cached_property
     def peaks(self) -> dict[str, Extremum]:
-        """Largest values over the whole drop by the names of PEAK_NAMES.
+        """Largest values over the whole drop, by name (PEAK_NAMES), at least zero.
 
-        spring_back: largest forward drag on the leg.
+        The peak "spring_back" is the largest forward drag on the leg.
         """
         times = np.linspace(0.0, self.spans[-1].last, 201)
 
@@ -153,12 +158,15 @@ class Landing:
 
     @property
     def equal_impulse_time(self) -> float:
-        """Time (s) in which a rectangular pulse of the peak force takes up the momentum m V."""
+        """Duration (s) of a rectangular pulse of the peak force with the momentum m V."""
         return self.drop.mass * self.drop.velocity / self.peaks["vertical"].value
 
 
 def land(drop: Drop) -> Landing:
-    """The landing from a drop. Raises: LandingError, also when the aircraft sinks at the end."""
+    """The landing from a drop.
+
+    Raises: LandingError where the drop fails, or when the aircraft still sinks at its end.
+    """
     landing = Landing(drop, fall(drop))
     ends = [span.last for span in landing.spans]
     if landing.at(np.array([0.0, *ends])).sink_velocity.min() > 0.0:
@@ -170,7 +178,7 @@ def land(drop: Drop) -> Landing:
 
 
 def _energies(d: Drop, y: Floats, stroke: Floats) -> LandingEnergies:
-    """Energies at states y (STATE_ROWS, T). stroke: of the strut, (T,) m."""
+    """Energies at states y (STATE_ROWS, T). stroke: (T,) stroke of the strut, m."""
     z1, v1 = y[TYRE_DEFLECTION] + y[WHEEL_TRAVEL], y[DEFLECTION_RATE] + y[WHEEL_TRAVEL_RATE]
     wheel, bending = d.wheel, (zero := np.zeros(y.shape[1]))
     kinetic = 0.5 * (d.sprung * v1**2 + d.unsprung * y[DEFLECTION_RATE] ** 2)

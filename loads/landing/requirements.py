@@ -20,8 +20,8 @@ MAX_TYRE_FRICTION = 0.8
 class DropRule:
     """The descent velocity and lift that a clause prescribes for a drop.
 
-    velocity: m/s; None: it follows from the wing loading.
-    lift: largest lift over weight.
+    velocity: m/s; None if it follows from the wing loading.
+    lift: largest ratio of lift to weight.
     """
 
     clause: str
@@ -59,10 +59,10 @@ DROP_RULES = {
 class GroundRule:
     """The load at a wheel that a clause prescribes.
 
-    vertical, drag, side: over the reference load; drag is aft, negative forward.
-    base: the reference load.
-    deflection: of strut and tyre, over that at the reference load.
-    spins: whether the drag is that of spin-up or spring-back, of which `drag` is the most.
+    vertical, drag, side: ratios to the reference load; drag is positive aft, negative forward.
+    base: the reference load, LARGEST_REACTION or STATIC_REACTION.
+    deflection: deflection of strut and tyre, relative to that at the reference load.
+    spins: whether the drag comes from spin-up or spring-back; `drag` is then its limit.
     """
 
     clause: str
@@ -122,7 +122,7 @@ GROUND_RULES = {
         2.25, 0.0, 2.25 * 0.7, STATIC_REACTION,
     ),
 }  # fmt: skip
-# The rules of a part of 14 CFR for a main wheel and for a nose wheel.
+# The rules of each part of 14 CFR for a main wheel and for a nose wheel.
 RULES_OF_PART = {
     ("25", "main"): ("25.473-spin-up", "25.473-spring-back", "25.479-drag", "25.479-drift"),
     ("25", "nose"): (),
@@ -160,11 +160,12 @@ def spin_up_drag(
     """Largest spin-up drag on a wheel, N: sqrt(2 I v n F / t) / r, at most n F.
 
     n = 0.8 is the effective coefficient of friction; spring-back is the same force forward.
-    inertia: I of the wheel, kg m^2.
+    inertia: moment of inertia I of the wheel, kg m^2.
     radius: effective radius r, m.
-    speed: v of the ground past the tyre, less its speed by pre-rotation, m/s.
-    vertical: F, the largest vertical force, N.
-    time: t from touch-down to that force, s.
+    speed: speed v of the ground past the axle, less the tyre's peripheral speed by pre-rotation,
+    m/s.
+    vertical: largest vertical force F, N.
+    time: time t from touch-down to that force, s.
 
     Source: appendix D to 14 CFR part 23.
     """

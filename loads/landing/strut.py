@@ -1,4 +1,4 @@
-"""Forces of a shock strut: a gas or linear spring, an orifice, and friction.
+"""Forces of a shock strut by a gas or linear spring, an orifice, and friction.
 
 The form is that of Milwitzky & Cook, NACA TR 1154 (1953). Force and stroke are positive in
 compression.
@@ -13,18 +13,18 @@ import numpy as np
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError, NumberInSI
 
-MAX_DISPLACED_GAS_SHARE = 0.98  # of the gas volume that a full stroke may displace
+MAX_DISPLACED_GAS_SHARE = 0.98  # largest share of the gas volume that a full stroke may displace
 
 
 @dataclass(frozen=True)
 class GasSpring:
     """A gas column, with the force A ((p + b) (v0 / (v0 - A s))^n - b) at stroke s.
 
-    pressure: p of the extended strut above ambient, Pa.
-    volume: v0 of the extended strut, m^3.
+    pressure: gas pressure p of the extended strut above ambient, Pa.
+    volume: gas volume v0 of the extended strut, m^3.
     area: A, m^2.
-    exponent: n of the polytropic change of state.
-    ambient: pressure b, Pa; with b = 0 it is the form of NACA TR 1154.
+    exponent: polytropic exponent n.
+    ambient: ambient pressure b, Pa; b = 0 gives the form of NACA TR 1154.
     """
 
     pressure: float
@@ -34,7 +34,7 @@ class GasSpring:
     ambient: float = 0.0
 
     def force(self, stroke: Floats) -> Floats:
-        """Force at strokes (T,) m, (T,) N; at zero stroke the preload."""
+        """Force at strokes (T,) m, (T,) N; the force at zero stroke is the preload."""
         ratio = self.volume / (self.volume - self.area * stroke)
         absolute = (self.pressure + self.ambient) * ratio**self.exponent
         return np.asarray(self.area * (absolute - self.ambient))
@@ -72,7 +72,7 @@ class Oil:
     area: hydraulic area A_h, m^2.
     orifice: area A_n, m^2.
     discharge: coefficient Cd.
-    rebound: area of the orifice while the strut extends, m^2; None: the same.
+    rebound: area of the orifice while the strut extends, m^2; None for the same area.
 
     Raises: ArgumentError for an orifice that is not smaller than the hydraulic area.
     """
@@ -110,8 +110,8 @@ class Oil:
 class Strut:
     """A shock strut.
 
-    stroke: at which it bottoms, m.
-    friction: of its bearings and seals, N, independent of the load.
+    stroke: stroke at which the strut bottoms, m.
+    friction: friction of its bearings and seals, N, independent of the load.
 
     Raises: ArgumentError for a stroke that would displace almost all the gas.
     """

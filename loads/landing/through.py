@@ -25,16 +25,16 @@ from pinbase.arrays import Complex, Floats
 from pinbase.errors import ArgumentError
 
 STROKE_POINTS = 65  # strokes at which the rise of the axle is computed
-DRIVE_DURATION = 1.0  # s, for all these strokes
+DRIVE_DURATION = 1.0  # s, in which the leg passes through all these strokes
 
 
 @dataclass(frozen=True)
 class Touchdown:
     """The axle and the strut of a leg in its mechanism.
 
-    body, joint: of the axle.
+    body, joint: names of the body and the joint of the axle.
     up, aft: unit vectors.
-    strut: number of the strut's drive; None: a rigid leg.
+    strut: number of the strut's drive; None for a rigid leg.
     extended: values of all drives with the strut extended, m or rad.
     """
 
@@ -64,9 +64,10 @@ def axes(linkage: Linkage, forward: str) -> tuple[Point, Point]:
 
 
 def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
-    """The stroke of a strut over the rise of its axle. stroke: the largest, m.
+    """The stroke of a strut as a function of the rise of its axle. stroke: largest stroke, m.
 
-    Raises: LinkageError, ArgumentError.
+    Raises: LinkageError where the linkage cannot follow the strut; ArgumentError where the axle
+    does not rise.
     """
     strokes, motion = _closing(linkage, place, stroke)
     at, _, _ = motion.joint(place.joint)
@@ -77,11 +78,12 @@ def travel(linkage: Linkage, place: Touchdown, stroke: float) -> Levered:
 def effective_mass(linkage: Linkage, place: Touchdown, stroke: float) -> float:
     """Effective mass of the leg at its axle, kg.
 
-    It has the kinetic energy T of all bodies and pins while the strut closes and the aircraft is at
-    rest: 2 T / (rate of rise)^2. As that changes along the stroke, it is the mean over the rise.
-    stroke: the largest, m.
+    It is the mass at the axle with the kinetic energy T of all bodies and pins while the strut
+    closes and the aircraft is at rest: 2 T / (rate of rise)^2. As this changes along the stroke,
+    the mean over the rise is taken.
+    stroke: largest stroke, m.
 
-    Raises: as `travel`.
+    Raises: LinkageError where the linkage cannot follow the strut.
     """
     _, motion = _closing(linkage, place, stroke)
     at, rate, _ = motion.joint(place.joint)
@@ -112,7 +114,7 @@ def at_deflection(landing: Landing, place: Touchdown, time: float, part: float) 
 
 @dataclass(frozen=True)
 class StrokeDrive:
-    """The length of a strut's slider during a drop. extended: its length at touch-down, m."""
+    """The length of a strut's slider during a drop. extended: length at touch-down, m."""
 
     landing: Landing
     extended: float
@@ -136,8 +138,8 @@ class StrokeDrive:
 class AppliedOverTime(Applied):
     """A load of a drop on a mechanism, in world axes.
 
-    mass: kg, of a body on which the aircraft's deceleration acts; None: the load is the force of
-    the ground on the axle.
+    mass: mass of a body on which the aircraft's deceleration acts, kg; None if the load is the
+    force of the ground on the axle.
     """
 
     landing: Landing | None = None
@@ -171,8 +173,9 @@ def pushes(linkage: Linkage, landing: Landing, place: Touchdown) -> tuple[Applie
 
 
 def fall(motion: Motion, applied: Iterable[object]) -> Floats:
-    """The acceleration of the axes in which a motion under loads is described, (T, 2) m/s^2: that
-    of the aircraft in a drop, else zero.
+    """The acceleration of the axes in which a motion under loads is described, (T, 2) m/s^2.
+
+    It is the acceleration of the aircraft in a drop, otherwise zero.
     """
     for load in applied:
         if isinstance(load, AppliedOverTime) and load.mass is not None:

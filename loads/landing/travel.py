@@ -14,7 +14,7 @@ from pinbase.errors import ArgumentError
 
 @dataclass(frozen=True)
 class Telescopic:
-    """A vertical strut: its stroke is the rise of the axle."""
+    """A vertical strut, whose stroke equals the rise of the axle."""
 
     def at(self, rise: Floats) -> tuple[Floats, Floats, Floats]:
         """Stroke (T,) m at rises (T,) m, and its first two derivatives by the rise."""
@@ -32,8 +32,9 @@ TELESCOPIC = Telescopic()
 class Levered:
     """Any other leg: stroke over rise by a quintic spline through rows.
 
-    The force at the wheel is that of the strut times the derivative (virtual work).
-    rises, strokes: (N,) m, both from zero on.
+    By virtual work the force at the wheel is the force of the strut times the derivative of the
+    stroke by the rise.
+    rises, strokes: (N,) m, both starting at zero.
 
     Raises: ArgumentError where the axle does not rise.
     """

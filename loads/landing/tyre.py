@@ -18,8 +18,9 @@ class PowerTyre:
 
     coefficient: a, N/m^r.
     exponent: r.
-    damping: s/m; the force is multiplied by 1 + damping z', never negative (Hunt & Crossley, 1975).
-    max_deflection: m.
+    damping: s/m; the force is multiplied by 1 + damping z', but not by less than zero (Hunt &
+    Crossley, 1975).
+    max_deflection: largest deflection, m.
     """
 
     coefficient: float
@@ -42,10 +43,10 @@ class TableTyre:
     """A tyre with a tabulated force, by a monotone piecewise cubic (Fritsch & Carlson, 1980).
 
     deflections, forces: (N,) m and N, increasing from (0, 0).
-    damping: as of a PowerTyre.
+    damping: as for a PowerTyre.
 
-    Raises: ArgumentError for fewer than three rows, another first row, or values that do not
-    increase.
+    Raises: ArgumentError for fewer than three rows, a first deflection or force other than zero, or
+    values that do not increase.
     """
 
     deflections: tuple[float, ...]
@@ -68,7 +69,7 @@ class TableTyre:
 
     @property
     def max_deflection(self) -> float:
-        """Last deflection of the table, m, beyond which the force is not known."""
+        """Last deflection of the table, m, beyond which the force is unknown."""
         return self.deflections[-1]
 
     @cached_property
@@ -86,7 +87,7 @@ class TableTyre:
     def force(self, deflection: Floats) -> Floats:
         """Force without damping at deflections (T,) m, (T,) N.
 
-        It is zero above the ground, and beyond the table that of the last row.
+        It is zero above the ground; beyond the table it is the force of the last row.
         """
         return np.asarray(self._curve(np.clip(deflection, 0.0, self.max_deflection)))
 

@@ -1,7 +1,7 @@
 """Spin-up and spring-back of a wheel that slides until it rolls, on a leg that bends.
 
-In axes of the aircraft, whose speed V is constant, x is the deflection of the axle aft and w the
-wheel's angular velocity; the tyre slides over the ground at V - x' - w r.
+The axes move with the aircraft, whose speed V is constant. x is the deflection of the axle aft, and
+w is the angular velocity of the wheel. The tyre slides over the ground at V - x' - w r.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from pinbase.arrays import Floats
 class Wheel:
     """A wheel that does not rotate at touch-down, on a leg that may bend.
 
-    inertia: kg m^2.
+    inertia: moment of inertia of the wheel, kg m^2.
     radius: rolling radius r of the loaded tyre, m.
-    speed: V of the aircraft over ground, m/s.
-    friction: coefficient of the sliding tyre.
-    stiffness: of the leg fore and aft at the axle, N/m; None: rigid.
-    mass: that moves with the axle as the leg bends, kg.
-    damping: of the bending, ratio to critical.
+    speed: speed V of the aircraft over the ground, m/s.
+    friction: friction coefficient of the sliding tyre.
+    stiffness: fore-and-aft stiffness of the leg at the axle, N/m; None for a rigid leg.
+    mass: mass that moves with the axle as the leg bends, kg.
+    damping: damping of the bending, ratio to critical.
     """
 
     inertia: float
@@ -47,11 +47,11 @@ class Wheel:
         return np.asarray(self.speed - bend_rate - spin * self.radius)
 
     def bending_force(self, bend: Floats, bend_rate: Floats) -> Floats:
-        """Force of the leg on the axle, forward, (T,) N; the drag that a flexible leg passes on."""
+        """Forward force of the leg on the axle, (T,) N: the drag that a flexible leg passes on."""
         return np.asarray((self.stiffness or 0.0) * bend + self.rate * bend_rate)
 
     def rolling_drag(self, bend: Floats, bend_rate: Floats) -> Floats:
-        """Drag (T,) N that keeps a wheel rolling while the leg bends."""
+        """Drag (T,) N on a wheel that rolls while the leg bends."""
         if self.stiffness is None:
             return np.zeros_like(bend)
         rolling_mass = self.inertia / self.radius**2
@@ -59,7 +59,7 @@ class Wheel:
         return np.asarray(share * self.bending_force(bend, bend_rate))
 
     def rates(self, drag: Floats, bend: Floats, bend_rate: Floats) -> tuple[Floats, Floats]:
-        """Accelerations x'' (m/s^2) and w' (rad/s^2), (T,) each, under the ground's drag (T,) N."""
+        """Accelerations x'' (m/s^2) and w' (rad/s^2), (T,) each, due to the drag (T,) N."""
         if self.stiffness is None:
             bend_acceleration = np.zeros_like(drag)
         else:

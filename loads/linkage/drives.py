@@ -1,7 +1,7 @@
-"""Laws of motion of a drive: value and first two derivatives at given times, exactly.
+"""Laws of motion of a drive, with exact value and first two derivatives at given times.
 
-Values are lengths of a slider (m) or angles (rad). Before its first and after its last time a drive
-is at rest.
+Values are lengths of a slider (m) or angles (rad). A drive is at rest before the first and after
+the last time of its law.
 """
 
 from __future__ import annotations
@@ -19,27 +19,28 @@ Values = tuple[Floats, Floats, Floats]
 
 
 class Law(Protocol):
-    """A law of motion; called with times (T,) s it gives value, rate and second rate, (T,) each."""
+    """A law of motion: a call with times (T,) s returns value, rate and second rate, (T,) each."""
 
     def __call__(self, times: Floats) -> Values: ...
 
     @property
     def pieces(self) -> tuple[float, ...]:
-        """Times between which the law is a single formula, s."""
+        """Times that divide the law into pieces of a single formula each, s."""
         ...
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Those `pieces` at which one of the first three derivatives may jump, s."""
+        """The `pieces` at which one of the first three derivatives may jump, s."""
         ...
 
 
 @dataclass(frozen=True)
 class Ramp:
-    """A motion from one value to another; the subclasses give its shape.
+    """A motion from one value to another, whose shape over time the subclasses define.
 
-    start, end: values, m or rad.
-    duration, begin: s.
+    start, end: first and last value, m or rad.
+    duration: length of the motion, s.
+    begin: time at which the motion begins, s.
     """
 
     start: float
@@ -62,7 +63,8 @@ class Ramp:
     def _scaled(self, times: Floats, shape: Floats, first: Floats, second: Floats) -> Values:
         """Value and derivatives of the motion from those of its dimensionless shape.
 
-        shape: (T,), rising from 0 to 1. first, second: its derivatives by time / duration.
+        shape: (T,), rising from 0 to 1.
+        first, second: (T,), derivatives of the shape with respect to time / duration.
         """
         travel = self.end - self.start
         moving = (times >= self.begin) & (times <= self.finish)
@@ -114,7 +116,7 @@ class ConstantDrive(Ramp):
 
 @dataclass(frozen=True)
 class StateDrive:
-    """A single instant: value, rate and second rate as stated, whatever the time."""
+    """The state at a single instant: value, rate and second rate are the same at all times."""
 
     value: float
     rate: float = 0.0
@@ -173,7 +175,7 @@ class TableDrive:
 
     @property
     def corners(self) -> tuple[float, ...]:
-        """Times of all rows, or of the two ends of a spline, which is smooth between them, s."""
+        """Times of all rows, s; only the two ends for a spline, which is smooth between them."""
         return self.times if self.rates else (self.begin, self.finish)
 
     @cached_property

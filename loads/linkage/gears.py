@@ -34,11 +34,11 @@ def gear_pair(
     """The teeth of two gears that mesh.
 
     gears, carrier: the two gears, and the body that carries both.
-    centres: of the two gears as drawn, m.
-    radii: of the pitch circles in any unit, or numbers of teeth; negative for a ring gear.
+    centres: centres of the two gears as drawn, m.
+    radii: radii of the pitch circles in any unit, or numbers of teeth; negative for a ring gear.
     pressure_angle: rad.
 
-    Raises: LinkageError where no circles in this ratio touch.
+    Raises: LinkageError where pitch circles of this ratio cannot touch.
     """
     distance, total = math.dist(*centres), sum(radii)
     if not distance or not total or max(radii) <= 0.0:
@@ -67,8 +67,8 @@ def rack_and_pinion(
     """The teeth of a pinion and a rack that mesh.
 
     sides, carrier: the pinion and the rack, and the body that carries both.
-    centre: of the pinion as drawn, m.
-    to_rack: vector from there, perpendicular to the pitch line and up to it, m.
+    centre: centre of the pinion as drawn, m.
+    to_rack: vector from the centre to the pitch line, perpendicular to that line, m.
     pressure_angle: rad.
     """
     radius = math.hypot(*to_rack)
@@ -80,9 +80,9 @@ def rack_and_pinion(
 def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:
     """The row (n,) of the equation of two meshing bodies, in the coordinates of `Loops`.
 
-    Times the coordinates (angles times the length scale, m) it gives the distance by which the
-    first body's teeth have moved ahead of the second's, m.
-    frame: number of each item's angle, 0 for the ground's.
+    The row times the coordinates (angles times the length scale, m) is the distance by which the
+    teeth of the first body have moved ahead of those of the second, m.
+    frame: (items + ground,) number of each item's frame, whose angle it shares; 0 is the ground's.
     """
     angles = int(frame.max())
     out = np.zeros(angles + 1 + len(linkage.sliders))  # the first is the ground's, dropped below
@@ -100,8 +100,8 @@ def row(linkage: Linkage, frame: Ints, teeth: Teeth) -> Floats:
 def side_weight(linkage: Linkage, teeth: Teeth, side: Gear | Rack) -> tuple[str | None, float]:
     """The distance by which teeth move along the pitch circle per unit of their own coordinate.
 
-    Returns the slider of a rack, or None for a gear, whose coordinate is its angle against the
-    carrier; and the weight, m per m or m per rad.
+    Returns the name of a rack's slider, or None for a gear, whose coordinate is its angle relative
+    to the carrier; and the distance, m per m or m per rad.
     """
     normal = complex(*teeth.normal)
     if isinstance(side, Rack):
@@ -113,16 +113,16 @@ def side_weight(linkage: Linkage, teeth: Teeth, side: Gear | Rack) -> tuple[str 
 
 
 def _slider(linkage: Linkage, name: str) -> tuple[int, Slider]:
-    """The slider of this name, after its number."""
+    """The number of the slider of this name, and the slider."""
     return next((k, s) for k, s in enumerate(linkage.sliders) if s.name == name)
 
 
 def gap_weights(linkage: Linkage, closing: Sequence[tuple[bool, int]]) -> Floats:
     """Motion of the teeth per gap at the members that close loops, (teeth, closing).
 
-    A gear whose bearing closes a loop moves against its carrier by the gap there, which the row of
-    the teeth does not contain; in turn, a force of the teeth acts at that gap.
-    closing: the members, each with whether it is a slider and its number.
+    A gear whose bearing closes a loop moves relative to its carrier by the gap at that bearing. The
+    row of the teeth does not contain this motion; in turn, a force of the teeth acts at that gap.
+    closing: pairs (whether the member is a slider, its number).
     """
     out = np.zeros((len(linkage.teeth), len(closing)))
     columns = {member: k for k, member in enumerate(closing)}
@@ -137,7 +137,7 @@ def gap_weights(linkage: Linkage, closing: Sequence[tuple[bool, int]]) -> Floats
 def _guides(
     linkage: Linkage, side: Gear | Rack, carrier: str
 ) -> Iterator[tuple[tuple[bool, int], float]]:
-    """The members that guide a gear or rack on its carrier, and its motion per unit gap there."""
+    """The members that guide a gear or rack on its carrier, and the motion per unit gap there."""
     if isinstance(side, Rack):
         k, slider = _slider(linkage, side.slider)
         yield (True, k), 1.0 if slider.moving == side.body else -1.0

@@ -1,4 +1,4 @@
-"""A planar linkage as data: its parts together, checked for contradictions."""
+"""A planar linkage as data, whose parts are checked for contradictions."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ Contradiction = tuple[str, str, Place]  # message, code and place of a LinkageEr
 class LinkageError(CodedError, ValueError):
     """The linkage as described cannot be analysed; the message says why and what would be right.
 
-    several: the single errors of which this one consists; empty where it is a single one.
+    several: the errors that this error combines; empty for a single error.
     """
 
     several: tuple[LinkageError, ...] = ()
 
     @classmethod
     def all(cls, errors: Sequence[LinkageError]) -> LinkageError:
-        """One error that consists of several."""
+        """One error that combines several; it has the code and place of the first."""
         error = LinkageError("; ".join(map(str, errors)), errors[0].code, errors[0].at)
         error.several = tuple(errors)
         return error
 
     @property
     def each(self) -> tuple[LinkageError, ...]:
-        """The single errors of which this one consists."""
+        """The errors that this error combines, or this error alone."""
         return self.several or (self,)
 
     @property
@@ -56,7 +56,7 @@ class LinkageError(CodedError, ValueError):
 class Linkage:
     """Bodies, joints, sliders and turns in the position in which they are drawn.
 
-    driven: names of the sliders and turns that drives prescribe; none of a structure.
+    driven: names of the sliders and turns that drives prescribe; a structure has none.
     gravity: acceleration of free fall, world axes, m/s^2.
 
     Raises: LinkageError where the parts contradict each other.
@@ -89,7 +89,7 @@ class Linkage:
 
     @property
     def rubs(self) -> bool:
-        """Whether anything has friction."""
+        """Whether any slider or connection has friction."""
         return any(s.friction for s in self.sliders) or any(c.friction for _, c in self.connections)
 
     @cached_property
@@ -107,13 +107,13 @@ class Linkage:
 
     @cached_property
     def index(self) -> dict[str, int]:
-        """Number of each item by its name; the ground comes after the last."""
+        """Number of each item by its name; the ground comes after the last item."""
         rows = {item.name: i for i, item in enumerate(self.items)}
         return rows | {GROUND: len(rows)}
 
     @cached_property
     def rigid(self) -> dict[str, tuple[str, ...]]:
-        """The bodies, and the ground, that each is welded to, itself included."""
+        """The bodies (or the ground) in the same weld as each body, itself included, by name."""
         names = [*(b.name for b in self.bodies), GROUND]
         groups: dict[str, tuple[str, ...]] = {name: (name,) for name in names}
         for body in self.bodies:
@@ -136,7 +136,7 @@ class Linkage:
         return _pin_item(joint) if joint.fixed_in is None else joint.fixed_in
 
     def joints_on(self, body: str) -> tuple[Joint, ...]:
-        """The joints at which a body (or the ground) turns or of which it carries the pin."""
+        """The joints at which a body (or the ground) turns, or whose pin is fixed in it."""
         return self._joints_on.get(body, ())
 
     @cached_property
@@ -158,12 +158,12 @@ class Linkage:
 
 
 def _pin_item(joint: Joint) -> str:
-    """Name of the item that a floating pin is."""
+    """Name of a floating pin as an item."""
     return f"pin {joint.name}"
 
 
 def _contradictions(linkage: Linkage) -> Iterator[Contradiction]:
-    """Everything by which the parts of a linkage contradict each other."""
+    """All contradictions between the parts of a linkage."""
     if not linkage.joints:
         yield "the linkage has no joints", "no-joints", ()
     bodies = {b.name: b for b in linkage.bodies}
@@ -211,7 +211,7 @@ def parallel_contradictions(
 ) -> Iterator[Contradiction]:
     """Contradictions of a rule for drives in parallel.
 
-    rules: all of them. driven: names of the drives. known: names of all coordinates.
+    rules: all rules. driven: names of the drives. known: names of all sliders and turns.
     """
     names, at = ", ".join(rule.members), ("sharing",)
     for name in rule.members:

@@ -1,4 +1,4 @@
-"""The parts of a planar linkage as data: bodies, pins, sliders, turns, teeth, shared loads."""
+"""The parts of a planar linkage as data, such as bodies, pins, sliders, turns and teeth."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ class Body:
 
     mass: kg.
     centre: centre of mass in world axes, m.
-    inertia: about the centre of mass, kg m^2; a body without inertia is a particle with a single
-    connection, at `centre`, or slides on the ground.
-    welded: the body, or GROUND, to which it is fixed.
+    inertia: moment of inertia about the centre of mass, kg m^2. A body without inertia (None) is a
+    particle with a single connection, at `centre`, or slides on the ground.
+    welded: the body, or GROUND, to which this body is welded.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Joint:
 
     at: position as drawn, world axes, m.
     fixed_in: GROUND or the body of which the pin is a part; None for a floating pin.
-    mass: of a floating pin, which is a particle, kg.
+    mass: mass of a floating pin, which is a particle, kg.
     """
 
     name: str
@@ -95,9 +95,9 @@ class Slider:
 
 @dataclass(frozen=True)
 class Turn:
-    """The angle of `body` relative to `base`, which a drive or stop acts on.
+    """The angle of `body` relative to `base`, on which a drive or stop acts.
 
-    drawn: its value as drawn, rad.
+    drawn: angle as drawn, rad.
     carries: sign of the couples on the body that a stop can carry.
     """
 
@@ -126,10 +126,10 @@ class Rack:
 
 @dataclass(frozen=True)
 class Teeth:
-    """The teeth of two bodies that mesh at a pitch point fixed in a third, the carrier.
+    """The teeth of two bodies that mesh at a pitch point fixed in a third body, the carrier.
 
     at: pitch point as drawn, m.
-    normal: unit vector there as drawn, out of the first body into the second.
+    normal: unit vector at the pitch point as drawn, out of the first body into the second.
     pressure_angle: rad.
     """
 
@@ -150,7 +150,7 @@ class Teeth:
 class Sharing:
     """A rule by which redundant connections and teeth share their load, as springs do.
 
-    stiffness: of each connection, in any unit.
+    stiffness: stiffness of each connection, in any unit.
     """
 
     connections: tuple[str, ...]
@@ -159,10 +159,10 @@ class Sharing:
 
 @dataclass(frozen=True)
 class Parallel:
-    """A rule by which drives in parallel, one of which moves the others, divide their force.
+    """A rule by which drives in parallel divide their force; one is driven, the others follow.
 
-    by: areas under the same pressure, or stiffness.
-    shares: the area or stiffness of each member, in any unit.
+    by: whether the force divides by areas under the same pressure, or by stiffness.
+    shares: area or stiffness of each member, in any unit.
     """
 
     members: tuple[str, ...]

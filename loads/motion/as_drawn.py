@@ -1,4 +1,4 @@
-"""Singular positions in the drawing: whether a linkage is drawn at a change point or dead point."""
+"""Whether a linkage is drawn in a singular position, a change point or a dead point."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ Singular = Literal["change point", "dead point"]
 
 TRIAL_DISPLACEMENT = 0.05  # rad (or length scales) from the drawing to a trial position
 TRIAL_COUNT = 12  # directions of trial positions
-MAX_TRIAL_DISPLACEMENT = 20.0 * TRIAL_DISPLACEMENT  # further away is not near the drawing
+MAX_TRIAL_DISPLACEMENT = 20.0 * TRIAL_DISPLACEMENT  # a position farther away is not near
 RANK_TOLERANCE = 1e-9  # smallest singular value that is not zero, relative to the largest
 CLOSED_LOOP_TOLERANCE = 1e-10  # gap of a closed loop, relative to the length scale
 
 
 def rank(singular: Floats) -> int:
-    """Rank of a matrix with these singular values (K,), the largest first."""
+    """Rank of a matrix from its singular values (K,), the largest first."""
     return int(np.sum(singular > RANK_TOLERANCE * singular[0])) if singular.any() else 0
 
 
 def singular_as_drawn(equations: Equations) -> Singular | None:
     """The kind of singular position in which the linkage is drawn, or None.
 
-    A drawing is singular if the equations have a higher rank at positions near it: at a change
-    point those of the loops have, at a dead point only those of loops and drives together.
+    A drawing is singular if the equations have a higher rank at positions near it. At a change
+    point the rank of the loop equations rises; at a dead point only that of the loop and drive
+    equations together.
     """
     loop_rank, total_rank = _ranks(equations, np.zeros(equations.columns))
     nearby = [_ranks(equations, q) for q in _nearby(equations)]
@@ -37,12 +38,12 @@ def singular_as_drawn(equations: Equations) -> Singular | None:
 
 
 def moves_nearby(equations: Equations) -> bool:
-    """Whether the linkage, with free drives, has positions near the drawing, other than it."""
+    """Whether the linkage, with free drives, can move to positions near the drawing."""
     return bool(_nearby(equations))
 
 
 def _ranks(equations: Equations, q: Floats) -> tuple[int, int]:
-    """Rank of the loop equations at coordinates q (n,), without the drives' and with them."""
+    """Rank of the loop equations, and of loop and drive equations, at coordinates q (n,)."""
     J = equations.jacobian(equations.pose(q[None]))[0]
     closing, whole = (np.linalg.svd(A, compute_uv=False) for A in (J[: equations.guides], J))
     return rank(closing), rank(whole)
@@ -71,7 +72,7 @@ def _nearby(equations: Equations) -> list[Floats]:
 def _closed(equations: Equations, direction: Floats) -> Floats | None:
     """Coordinates (n,) with closed loops at TRIAL_DISPLACEMENT along a direction, or None.
 
-    They follow by Newton's method from the point on the straight line; None where it fails.
+    Newton's method starts from the point on the straight line; None where it does not converge.
     direction: (n,) unit vector of scaled coordinates.
     """
     scale = equations.linkage.length_scale

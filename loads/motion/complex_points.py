@@ -29,8 +29,9 @@ def cross(a: Complex, b: Complex) -> Floats:
 class Points:
     """N points (or gaps of loops) as sums of vectors that rotate and slide.
 
-    turning: (F, N) complex, m, A of every frame.
-    sliding: (S, N) B of every slider, 0 or +-1.
+    turning: (F, N) complex, m, the fixed vector A of every frame, in the formula of
+    `loop_equations`.
+    sliding: (S, N), the factor B of every slider, 0 or +-1 for a point.
     """
 
     turning: Complex
@@ -44,9 +45,9 @@ class Points:
 class Pose:
     """The position of a linkage at T instants.
 
-    turn: (T, F) u of every frame, the ground's first.
+    turn: (T, F) exp(i angle) of every frame, the ground's first.
     axis: (T, S) directions of the sliders, complex unit vectors.
-    extension: (T, S) m, of the sliders since the drawing.
+    extension: (T, S) extensions of the sliders since the drawing, m.
     """
 
     turn: Complex
@@ -59,9 +60,9 @@ class Pose:
 
 @dataclass(frozen=True)
 class PointMotion:
-    """A quantity of points at T instants, linear in where they are on their frames and sliders.
+    """A quantity of points at T instants (position, velocity, ...), linear in `Points`.
 
-    turning: (T, F), by the frame. sliding: (T, S), by the slider.
+    turning: (T, F), factor of each frame's vector. sliding: (T, S), factor of each slider.
     """
 
     turning: Complex

@@ -1,4 +1,4 @@
-"""What following a motion needs to know of a linkage: its equations, in the plane or in space."""
+"""Interface of the equations of a linkage, in the plane or in space, for following a motion."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from loads.motion.least_squares import Factors
 from pinbase.arrays import Floats
 
-MIN_PARTICIPATION = 1e-6  # of the largest component of a null vector
+MIN_PARTICIPATION = 1e-6  # relative to the largest component of a null vector
 
 
-CLOSING_GEARS = (("the ratios of its gears", "the gears"),)  # of Equations.besides_lengths
+CLOSING_GEARS = (("the ratios of its gears", "the gears"),)  # of Equations.closing_conditions
 
 
 class Equations(Protocol):
-    """The equations of a linkage: of its joints and gears, then of its D drives.
+    """The equations of a linkage: those of its joints and gears, then those of its D drives.
 
-    There are `rows` equations, in m, for n = `columns` coordinates, all zero as drawn.
-    A pose holds what follows from coordinates (T, n) at T instants; it can be indexed by instants.
+    There are `rows` equations, in m, for n = `columns` coordinates, which are all zero as drawn.
+    A pose holds the position at coordinates (T, n) of T instants; it can be indexed by instants.
     """
 
     linkage: Any  # a Linkage or SpaceLinkage
@@ -32,7 +32,7 @@ class Equations(Protocol):
 
     @property
     def guides(self) -> int:
-        """Number of equations without the drives'."""
+        """Number of equations without those of the drives."""
         ...
 
     @property
@@ -54,7 +54,7 @@ class Equations(Protocol):
         ...
 
     def residual(self, q: Floats, pose: Any, drives: Floats) -> Floats:
-        """Violation of every equation, (T, rows) m, with the drives at values (T, D)."""
+        """Violation of every equation, (T, rows) m; drives: (T, D) values of the drives."""
         ...
 
     def jacobian(self, pose: Any) -> Floats:
@@ -66,7 +66,7 @@ class Equations(Protocol):
         ...
 
     def bend_side(self, pose: Any, rates: Floats) -> Floats:
-        """Right-hand side (T, rows) from the accelerations that are quadratic in rates (T, n)."""
+        """Right-hand side (T, rows) of the accelerations that are quadratic in rates (T, n)."""
         ...
 
     # --- names for messages -----------------------------------------------------------------------
@@ -82,26 +82,29 @@ class Equations(Protocol):
         ...
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """The needs of redundant links to close, besides their lengths, and what describes each."""
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
+        """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         ...
 
     def moving(self, pose: Any, rates: Floats, least: float = MIN_PARTICIPATION) -> tuple[str, ...]:
         """Names of the bodies that move in any of k motions.
 
-        pose: at a single instant. rates: (k, n) of the coordinates.
-        least: speed of a body that moves, relative to the fastest.
+        pose: pose of a single instant. rates: (k, n) rates of the coordinates.
+        least: speed above which a body moves, relative to the fastest body.
         """
         ...
 
     def advice(self, pose: Any, rates: Floats) -> str:
-        """Advice on stopping k motions (k, n) with the drives locked; "" where there is none."""
+        """Advice on how to stop motions possible with locked drives; "" where there is none.
+
+        pose: pose of a single instant. rates: (k, n) rates of the coordinates, one row per motion.
+        """
         ...
 
     def stressed(self, pose: Any, multipliers: Floats) -> tuple[str, ...]:
         """Names of the connections and teeth that carry any of k self-equilibrated sets of forces.
 
-        pose: at a single instant. multipliers: (rows, k).
+        pose: pose of a single instant. multipliers: (rows, k), one column per set.
         """
         ...
 
@@ -114,6 +117,6 @@ class Equations(Protocol):
 
 
 def drive_side(equations: Equations, rates: Floats) -> Floats:
-    """Right-hand side (T, rows) for drives with these rates (T, D)."""
+    """Right-hand side (T, rows) from the rates (T, D) of the drives; zero in the other rows."""
     fixed = np.zeros((len(rates), equations.guides))
     return np.concatenate([fixed, equations.drive_scale * rates], axis=1)

@@ -1,5 +1,5 @@
-"""Four-bar linkages: their recognition, class after Grashof, and whether they are crossed; and the
-closed form of a lever that a slider turns.
+"""Four-bar linkages (recognition, Grashof's class, crossed or open), and the closed form of a lever
+that a slider turns.
 """
 
 from __future__ import annotations
@@ -12,17 +12,17 @@ from loads.linkage.linkage import Linkage
 from loads.linkage.parts import GROUND, Point
 from pinbase.arrays import Floats
 
-CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest equal the other two
+CHANGE_POINT_TOLERANCE = 1e-9  # of the perimeter: shortest + longest then equal the other two
 
 
 @dataclass(frozen=True)
 class FourBar:
     """A four-bar linkage.
 
-    lengths: of the ground, the driven link, the coupler and the follower, m.
-    bodies: the driven link, the coupler and the follower.
-    joints: in order along the ring (fixed, moving, moving, fixed).
-    crossed: whether two of its sides intersect as drawn.
+    lengths: lengths of the ground, the driven link, the coupler and the follower, m.
+    bodies: names of the driven link, the coupler and the follower.
+    joints: names of the joints in order along the ring (fixed, moving, moving, fixed).
+    crossed: whether two opposite sides intersect as drawn.
     """
 
     lengths: tuple[float, float, float, float]
@@ -47,8 +47,8 @@ class FourBar:
 def four_bar(linkage: Linkage) -> FourBar | None:
     """The linkage as a four-bar, or None.
 
-    It is one if three bodies and the ground form a ring of four pins and a body at the ground is
-    driven by its angle.
+    A linkage is a four-bar if three bodies and the ground form a ring of four pins, and the angle
+    of a body pinned to the ground is driven.
     """
     bodies = [b.name for b in linkage.bodies if b.inertia is not None]
     if any(b.welded for b in linkage.bodies):
@@ -90,8 +90,8 @@ def _distance(a: Point, b: Point) -> float:
 def _crossed(at: list[Point]) -> bool:
     """Whether two opposite sides of the ring of four joints at `at` intersect.
 
-    Of Grashof's linkages these are the two links adjacent to the shortest (Norton, Design of
-    Machinery, sec. 4.5). The mirror image of a linkage is as it is.
+    In a Grashof linkage the two links adjacent to the shortest intersect (Norton, Design of
+    Machinery, sec. 4.5). The mirror image of a crossed linkage is also crossed.
     """
     o2, a, b, o4 = at
     return _intersect(o2, a, b, o4) or _intersect(a, b, o4, o2)
@@ -123,7 +123,7 @@ class Lever:
         """Angle at the pivot (rad) and its first two rates, (T,) each.
 
         They follow from length^2 = base^2 + arm^2 - 2 base arm cos(angle), differentiated twice.
-        length, speed, rate: (T,) of the slider, m, m/s and m/s^2.
+        length, speed, rate: (T,) length of the slider and its two rates, m, m/s and m/s^2.
         """
         k = self.base * self.arm
         angle = np.arccos((self.base**2 + self.arm**2 - length**2) / (2.0 * k))
@@ -138,7 +138,7 @@ class Lever:
         """Speed (m/s) and acceleration (m/s^2) of a point, magnitudes, (T,) each.
 
         radius: distance of the point from the pivot, m.
-        length, speed, rate: as of `turn`.
+        length, speed, rate: as for `turn`.
         """
         _, first, second = self.turn(length, speed, rate)
         return radius * np.abs(first), radius * np.hypot(second, first**2)

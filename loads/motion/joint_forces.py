@@ -1,7 +1,8 @@
 """Forces in every connection and slider, from the forces that items require and those at closures.
 
-A cut through one member of the spanning tree separates the items beyond it: the force in the member
-is what these items require, less the forces of closures and teeth on them. No system is solved.
+A cut through one member of the spanning tree separates the items beyond the member. The force in
+the member is the force that these items require, less the forces of closures and teeth on them. No
+system of equations is solved.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ from pinbase.arrays import Complex, Floats
 class Members:
     """Weights from which the forces in members follow.
 
-    from_items: (members, items), of the forces that items require.
-    from_closures: (members, closures and teeth), of the forces there.
+    from_items: (members, items), weights of the forces that items require.
+    from_closures: (members, closures and teeth), weights of the forces at closures and teeth.
     """
 
     from_items: Floats
@@ -31,7 +32,8 @@ class Members:
     def forces(self, needed: Complex, closing: Complex) -> Complex:
         """Forces in the members, (T, members) N, complex.
 
-        needed: (T, items) N, that the items require. closing: (T, closures and teeth) N.
+        needed: (T, items) N, forces that the items require.
+        closing: (T, closures and teeth) N, forces at closures and teeth.
         """
         return np.asarray(needed @ self.from_items.T + closing @ self.from_closures.T)
 
@@ -67,7 +69,7 @@ def _members(loops: Loops, slides: bool, count: int) -> Members:
 
 
 def loops_of_sliders(loops: Loops) -> dict[int, tuple[str, ...]]:
-    """The names of the sliders that alone form a loop, by the number of each of them."""
+    """The names of all sliders of a loop that consists of sliders only, by each one's number."""
     out = dict[int, tuple[str, ...]]()
     for (slides, which), body, carrier in zip(loops.closing, *loops.closing_ends[:2], strict=False):
         if slides:
@@ -90,13 +92,14 @@ def slider_couple(
 ) -> Floats:
     """Couple of the base on the moving body of a slider, (T,) N m.
 
-    A slider that closes a loop of sliders alone is taken to carry no couple, which nothing but its
-    own friction depends on (`loops_of_sliders`).
+    A slider that closes a loop consisting of sliders only (`loops_of_sliders`) is assumed to carry
+    no couple. Only its own friction depends on this assumption.
     which: number of the slider.
-    about: (T,) points, complex, m.
-    centres, needed, couples: (T, items) centres of mass, and forces and couples that items require.
-    closing_at, closing: (T, closures and teeth) points and forces there.
-    torques: (T,) N m of every turn that is held.
+    about: (T,) points about which the couple is taken, complex, m.
+    centres: (T, items) centres of mass, complex, m.
+    needed, couples: (T, items) forces (N, complex) and couples (N m) that the items require.
+    closing_at, closing: (T, closures and teeth) points (m) and forces (N) there, complex.
+    torques: every turn that is held, with its torque (T,) N m.
     """
     edge = next((e for e in loops.tree if e.slides and e.which == which), None)
     out = np.zeros(len(about))

@@ -1,10 +1,10 @@
 """Least squares, transposed solutions and null vectors for a stack of small sparse systems.
 
-All systems have one pattern of nonzeros. The method is sparse QR, column by column (George and
-Heath, Solution of sparse linear least squares problems using Givens rotations, 1980; here by
-Householder reflections of the rows that share a column). As it needs no pivoting, the order of the
-columns and the places of all nonzeros are determined once, and every operation is done for all
-systems of the stack at once.
+All systems have the same pattern of nonzeros. The method is sparse QR, column by column (George and
+Heath, Solution of sparse linear least squares problems using Givens rotations, 1980; here with
+Householder reflections of the rows that share a column). The method needs no pivoting. So the order
+of the columns and the places of all nonzeros are determined once, and every operation is done for
+all systems of the stack at once.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from pinbase.arrays import Floats
 
 Ints = NDArray[np.int64]
 
-MAX_POWER_ROUNDS = 30  # of the power method for a condition number
-NUMPY_SUMS_IN_ORDER = 8  # terms from which numpy may sum in pairs instead
-CONDITION_TOLERANCE = 1e-6  # relative change in the last round; the error is of that order
+MAX_POWER_ROUNDS = 30  # iterations of the power method for a condition number
+NUMPY_SUMS_IN_ORDER = 8  # from this number of terms on, numpy may sum in pairs instead of in order
+CONDITION_TOLERANCE = 1e-6  # relative change in the last iteration; the error is of this order
 
 
 @dataclass(frozen=True)
 class Step:
     """The elimination of one column.
 
-    rows: (r,) that contain the column; the first of them keeps it, as a row of R.
-    columns: (m,) that these rows contain then, the eliminated one first.
+    rows: (r,) rows that contain the column; the first of them keeps it, as a row of R.
+    columns: (m,) columns that these rows contain at this step, the eliminated column first.
     """
 
     rows: Ints
@@ -43,27 +43,27 @@ class Step:
 
 
 def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
-    """The steps for systems with nonzeros in a pattern (rows, columns).
+    """The steps of elimination for systems with nonzeros in a pattern (rows, columns).
 
-    The next column is always the one whose rows have the fewest columns together, so that few
-    entries fill in.
+    The next column is always the one whose rows together have the fewest columns, which keeps the
+    fill-in small.
     """
     nonzero = pattern.copy()  # rows of R, which keep a column, are emptied
     fill, steps = nonzero.T.astype(np.int64) @ nonzero > 0, list[Step]()
-    left, rows = np.ones(nonzero.shape[1], dtype=bool), np.ones(len(nonzero), dtype=bool)
-    while left.any():
-        column = int(np.where(left, fill.sum(axis=1), nonzero.size + 1).argmin())
+    remaining, rows = np.ones(nonzero.shape[1], dtype=bool), np.ones(len(nonzero), dtype=bool)
+    while remaining.any():
+        column = int(np.where(remaining, fill.sum(axis=1), nonzero.size + 1).argmin())
         front = np.flatnonzero(nonzero[:, column])
         if not len(front):  # no row has the column: the system is rank deficient
             front = np.flatnonzero(rows)[:1]
         others = np.asarray(nonzero[front].any(axis=0))
         others[column] = False
         steps.append(Step(front, np.append(column, np.flatnonzero(others))))
-        # After the reflection all rows of the front contain all their columns but this one; the
-        # first is a row of R and takes no further part.
+        # After the reflection every row of the front contains all columns of the front except the
+        # eliminated one. The first row is now a row of R and takes no further part.
         nonzero[front] = others
         nonzero[front[0]] = False
-        rows[front[0]] = left[column] = False
+        rows[front[0]] = remaining[column] = False
         for c in np.flatnonzero(others):
             fill[c] = nonzero[nonzero[:, c]].any(axis=0)
     return tuple(steps)
@@ -72,16 +72,18 @@ def elimination(pattern: NDArray[np.bool_]) -> tuple[Step, ...]:
 class Factors:
     """Orthogonal factors of a stack of matrices J (T, rows, columns), rows >= columns.
 
-    steps: of `elimination`.
-    J: of full column rank; it is overwritten.
+    steps: steps of `elimination` for the pattern of J.
+    J: matrices of full column rank; they are overwritten.
 
-    Where this is used redundant rows are consistent, so that least squares satisfies all rows.
+    The callers' redundant rows are consistent, so that the least-squares solution satisfies all
+    rows.
     """
 
     def __init__(self, steps: tuple[Step, ...], J: Floats) -> None:
         self._steps, self._rows, self._n = steps, J.shape[1], J.shape[2]
         work = np.moveaxis(J, 0, -1)
-        # For every step: its reflection I - u u^T (T last), and its row of R, the diagonal first.
+        # For every step: the vector u of its reflection I - u u^T (T last), and its row of R, the
+        # diagonal first.
         self._reflections, self._R = list[Floats](), list[Floats]()
         for step in steps:
             front = work[step.block]
@@ -155,13 +157,13 @@ class Factors:
         return bool(self._diagonal.all())
 
     def _require_pivots(self) -> None:
-        """Raises: LinAlgError where a pivot is zero, as LAPACK would."""
+        """Raise LinAlgError where a pivot is zero, as LAPACK would."""
         if not self._regular:
             raise np.linalg.LinAlgError("singular matrix")
 
     @cached_property
     def weakest(self) -> Floats:
-        """Smallest over largest pivot, (T,), which is tiny where J loses rank."""
+        """Ratio of smallest to largest pivot, (T,), which is tiny where J loses rank."""
         pivots = np.abs(self._diagonal)
         return np.asarray(pivots.min(axis=0) / pivots.max(axis=0))
 
@@ -184,10 +186,10 @@ class Factors:
         return x
 
     def condition(self) -> Floats:
-        """Condition number of J, (T,), largest over smallest singular value.
+        """Condition number of J, (T,): the ratio of the largest to the smallest singular value.
 
-        It follows by the power method for R^T R and its inverse; NaN where that does not converge
-        within MAX_POWER_ROUNDS.
+        Both come from the power method, for R^T R and its inverse. The number is NaN where the
+        method does not converge within MAX_POWER_ROUNDS.
         """
         largest = self._largest_eigenvalue(self._apply_gram)
         inverse_smallest = self._largest_eigenvalue(self._solve_gram)
@@ -207,7 +209,9 @@ class Factors:
             x /= size
             converged = np.abs(size - before) <= CONDITION_TOLERANCE * size
             new = np.isnan(eigenvalues) & converged
-            eigenvalues[new] = size[new]  # at once, so that other systems do not matter
+            # Each system keeps the value of the iteration in which it converged, so that its result
+            # does not depend on the other systems of the stack.
+            eigenvalues[new] = size[new]
             if not np.isnan(eigenvalues).any():
                 break
             before = size
@@ -216,8 +220,8 @@ class Factors:
     def orientation(self, J: Floats) -> Floats:
         """Determinant, (T,), of another J projected on the range of this one.
 
-        It is positive if the two agree in orientation; a negative sign shows that J has lost rank
-        between them.
+        It is positive if the two matrices agree in orientation. A negative sign shows that J has
+        lost rank somewhere between them.
         """
         columns = np.array([step.columns[0] for step in self._steps])
         rotated = self._apply_q_transposed(np.array(np.moveaxis(J, 0, -1), order="C"))
@@ -237,7 +241,7 @@ def _reflection(x: Floats) -> Floats:
 
 
 def _reflect(b: Floats, rows: Ints, u: Floats) -> None:
-    """Reflect some of the rows of b (rows, ..., T) in place, by I - u u^T."""
+    """Reflect the given rows of b (rows, ..., T) in place, by I - u u^T."""
     if len(rows) > 1:
         if b.ndim > 2:
             u = u.reshape(len(u), *(1,) * (b.ndim - 2), -1)
@@ -246,7 +250,7 @@ def _reflect(b: Floats, rows: Ints, u: Floats) -> None:
 
 
 def _total(x: Floats) -> Floats:
-    """Sum over the first axis, in its order: the same bits whatever the number of systems."""
+    """Sum over the first axis, in order: its bits do not depend on the number of systems."""
     if len(x) < NUMPY_SUMS_IN_ORDER:
         return np.asarray(np.add.reduce(x, axis=0, initial=0.0))
     return reduce(np.add, x, np.zeros(x.shape[1:]))

@@ -28,17 +28,18 @@ from loads.motion.least_squares import Factors, Step, elimination
 from loads.motion.spanning_tree import LENGTH_ROUND_OFF, ends_of, frames, shortest, spanning_tree
 from pinbase.arrays import Complex, Floats, Ints
 
-MATRIX_BATCH_ENTRIES = 2**20  # in the matrices of a batch of instants: 8 MB
+MATRIX_BATCH_ENTRIES = 2**20  # entries of the matrices of a batch of instants: 8 MB
 
 
 class Loops:
     """The loop and drive equations of one linkage.
 
-    Coordinates q (T, n) are the angles (rad) of all frames but the ground's, then extensions (m).
-    Rows are two per closure (x of all closures, then y), one per pair of teeth, and one per drive.
-    The multiplier of a closure is the force of the pin on the body (of the base on the moving
-    body), N; that of teeth the force on the first body along the pitch circle, N; that of a drive
-    its force, or its torque over the length scale, N.
+    Coordinates q (T, n) are the angles (rad) of all frames but the ground's, then the extensions
+    (m) of the sliders. There are two rows per closure (x of all closures, then y of all), one row
+    per pair of teeth, and one row per drive. All multipliers are in N. The multiplier of a closure
+    is the force of the pin on the body, or of the base on the moving body; that of teeth is the
+    force on the first body along the pitch circle; that of a drive is its force, or its torque over
+    the length scale.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -65,7 +66,7 @@ class Loops:
 
     @property
     def guides(self) -> int:
-        """Number of equations without the drives'."""
+        """Number of equations without those of the drives."""
         return 2 * len(self.closing) + len(self.linkage.teeth)
 
     def parts(self, count: int) -> list[slice]:
@@ -108,7 +109,10 @@ class Loops:
         return np.array([self.unit(drive) for drive in self.linkage.drives])
 
     def points(self, items: Ints, drawn: Complex) -> Points:
-        """Points of items. items: (N,) numbers. drawn: (N,) positions as drawn, complex, m."""
+        """Points fixed in items.
+
+        items: (N,) numbers of the items. drawn: (N,) positions as drawn, complex, m.
+        """
         turning = self._root[:, items].copy()
         turning[self.frame[items], np.arange(len(items))] += drawn
         return Points(turning, self._slid[:, items])
@@ -138,7 +142,7 @@ class Loops:
         return self.places(pose).of(points)
 
     def places(self, pose: Pose) -> PointMotion:
-        """The positions, m, of whatever points."""
+        """The positions, m, as a linear function of any points."""
         return PointMotion(pose.turn, pose.axis * pose.extension)
 
     def partials(self, pose: Pose, points: Points) -> Complex:
@@ -158,7 +162,7 @@ class Loops:
         return self.speeds(pose, rates).of(points)
 
     def speeds(self, pose: Pose, rates: Floats) -> PointMotion:
-        """The velocities of whatever points at rates (T, n)."""
+        """The velocities at rates (T, n), as a linear function of any points."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
@@ -177,14 +181,14 @@ class Loops:
         return out
 
     def bends(self, pose: Pose, rates: Floats, points: Points) -> Complex:
-        """Part of the points' accelerations that is quadratic in the rates (T, n), (T, N) complex.
+        """Centripetal and Coriolis accelerations of points at rates (T, n), (T, N) complex.
 
-        It consists of centripetal and Coriolis accelerations.
+        They are the part of the accelerations that is quadratic in the rates.
         """
         return self.curvatures(pose, rates).of(points)
 
     def curvatures(self, pose: Pose, rates: Floats) -> PointMotion:
-        """The `bends` of whatever points at rates (T, n)."""
+        """The `bends` at rates (T, n), as a linear function of any points."""
         angles = self.frames - 1
         omega = np.zeros((len(rates), self.frames))
         omega[:, 1:] = rates[:, :angles]
@@ -228,8 +232,11 @@ class Loops:
 
     @cached_property
     def _turning_slopes(self) -> tuple[Ints, Ints, Complex]:
-        """Frames (less the ground's) and closures that depend on each other, (N,) each, and the
-        slope of the closure over the direction of the frame, (N, 1).
+        """The N nonzero terms of the closures that rotate with frames.
+
+        Returns the frame of each term (without the ground's, counted from 0), its closure, (N,)
+        each, and the derivative of the closure by the scaled angle over the frame's direction,
+        (N, 1).
         """
         turning = self.closures.turning[1:]
         f, k = np.nonzero(turning)
@@ -251,7 +258,7 @@ class Loops:
         return elimination(pattern)
 
     def bend_side(self, pose: Pose, rates: Floats) -> Floats:
-        """Right-hand side (T, rows) from the accelerations that are quadratic in rates (T, n).
+        """Right-hand side (T, rows) of the accelerations that are quadratic in rates (T, n).
 
         It is zero in the rows of teeth and drives, which are linear in the coordinates.
         """
@@ -262,9 +269,9 @@ class Loops:
     # --- assembly ---------------------------------------------------------------------------------
 
     def _chains(self) -> tuple[Complex, Floats]:
-        """The points of the items at the drawing's origin: (F, items + ground) and (S, ...).
+        """The point of each item that coincides with the origin as drawn.
 
-        They are `turning` and `sliding` as of Points.
+        Returns `turning`, (F, items + ground), and `sliding`, (S, items + ground), of Points.
         """
         linkage = self.linkage
         count = len(linkage.index)
@@ -285,10 +292,10 @@ class Loops:
 
     @cached_property
     def closing_ends(self) -> tuple[Ints, Ints, Complex]:
-        """Items at the two ends of every closure, then of all teeth, and its position as drawn.
+        """Items at the two ends of every closure, then of all teeth, and their positions as drawn.
 
-        The force of the closure acts on the first item (the body) and reacts on the second (what
-        carries it). Positions are complex, m.
+        The force acts on the first item (the body), and its reaction on the second item (the
+        carrier, or the second body of the teeth). Positions are complex, m.
         """
         linkage, index = self.linkage, self.linkage.index
         ends = [ends_of(linkage, *c) for c in self.closing]
@@ -301,7 +308,7 @@ class Loops:
 
     @cached_property
     def closing_points(self) -> Points:
-        """Points at which the forces of closures and teeth act; a pitch point is of the carrier."""
+        """Points at which forces of closures and teeth act; pitch points are fixed in carriers."""
         acts, _, at = self.closing_ends
         carriers = [self.linkage.index[t.carrier] for t in self.linkage.teeth]
         return self.points(np.array([*acts[: len(self.closing)], *carriers], dtype=np.int64), at)
@@ -309,8 +316,8 @@ class Loops:
     def closing_forces(self, pose: Pose, f: Floats, spread: Floats | None = None) -> Complex:
         """Forces at the members that close loops and at teeth, (T, closing and teeth) N, complex.
 
-        f: (T, rows) multipliers.
-        spread: (T, teeth) N, radial forces that push teeth apart.
+        f: (T, rows) multipliers, N.
+        spread: (T, teeth) N, radial forces that push the gears apart; None for no such forces.
         """
         k = len(self.closing)
         closing = (f[:, :k] + 1j * f[:, k : 2 * k]) @ self._combined.T
@@ -328,7 +335,7 @@ class Loops:
 
     @cached_property
     def closures(self) -> Points:
-        """The loop equations, as sums and differences of the gaps with few nonzeros."""
+        """The loop equations: sums and differences of the gaps, chosen to have few nonzeros."""
         turning, sliding = self.gaps.turning @ self._combined, self.gaps.sliding @ self._combined
         turning[np.abs(turning) < LENGTH_ROUND_OFF * self.linkage.length_scale] = 0.0
         return Points(turning, sliding)

@@ -1,4 +1,4 @@
-"""Mobility by the rank of the loop equations: unconstrained bodies and redundant connections."""
+"""Mobility by the rank of the loop equations, with loose bodies and redundant connections."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Mobility:
 
     kutzbach: degrees of freedom by counting links and joints.
     degrees: degrees of freedom by rank, without drives.
-    free: degrees of freedom that remain with the drives locked; 0: the position is determined.
-    loose: bodies that can move then.
-    advice: what would stop them, if that can be told.
+    free: degrees of freedom that remain with the drives locked; with 0 the position is determined.
+    loose: names of the bodies that can still move with the drives locked.
+    advice: advice on how to stop these bodies, or "".
     redundant: number of redundant equations.
     shared: connections whose force rigid-body statics does not determine.
     """
@@ -46,7 +46,7 @@ def mobility(linkage: Linkage) -> Mobility:
 
 
 def freedom_of(equations: Equations) -> Mobility:
-    """The same of a linkage in the plane or in space, from its equations."""
+    """Mobility and redundancy, as drawn, of a linkage in the plane or in space."""
     pose = equations.pose(np.zeros((1, equations.columns)))
     J = equations.jacobian(pose)[0]
     left, singular, right = np.linalg.svd(J)
@@ -65,10 +65,10 @@ def freedom_of(equations: Equations) -> Mobility:
 
 
 def require_determined(linkage: Linkage) -> Mobility:
-    """The mobility of a linkage whose drives determine every position.
+    """The mobility of a planar linkage whose drives determine every position.
 
-    Raises: LinkageError where they do not, with the bodies that can still move; for too many
-    drives; and for sharing rules without effect.
+    Raises: LinkageError where the drives do not determine the position, with the bodies that can
+    still move; for too many drives; and for sharing rules without effect.
     """
     freedom = require_driven(PlanarEquations(linkage))
     undriven = partial(_undriven, linkage)
@@ -80,7 +80,7 @@ def require_determined(linkage: Linkage) -> Mobility:
 def require_driven(equations: Equations) -> Mobility:
     """The mobility of a linkage, in the plane or in space, whose drives determine every position.
 
-    Raises: LinkageError where they do not, or are too many.
+    Raises: LinkageError where the drives do not determine the position, or are too many.
     """
     freedom, driven = freedom_of(equations), equations.linkage.driven
     if 0 < freedom.degrees < len(driven):
@@ -96,7 +96,7 @@ def require_driven(equations: Equations) -> Mobility:
 
 
 def _unconstrained(equations: Equations, freedom: Mobility) -> LinkageError:
-    """The error of bodies that can move with the drives locked: singular as drawn, or unguided."""
+    """The error for bodies that can move with locked drives: a singular drawing, or no guidance."""
     loose, driven = ", ".join(freedom.loose), equations.linkage.driven
     if not driven:
         return _undriven_error(equations, freedom, loose)
@@ -122,7 +122,7 @@ def _unconstrained(equations: Equations, freedom: Mobility) -> LinkageError:
 
 
 def _undriven_error(equations: Equations, freedom: Mobility, loose: str) -> LinkageError:
-    """The error of a linkage without drives that can move, or is at the limit of its form."""
+    """The error for a linkage without drives that can move, by a finite or infinitesimal motion."""
     if not moves_nearby(equations):
         return LinkageError(
             f"as drawn {loose} can give way a little although nothing is missing (joints in line, "
@@ -144,9 +144,9 @@ def idle_sharing(
     freedom: Mobility,
     advice: Callable[[tuple[str, ...]], str] = lambda idle: "",
 ) -> Iterator[LinkageError]:
-    """The errors of sharing rules none of whose connections is statically indeterminate.
+    """The errors of sharing rules of which no connection is statically indeterminate.
 
-    advice: on connections that share nothing.
+    advice: function that returns advice for the connections of such a rule.
     """
     for share in rules:
         if set(share.connections) & set(freedom.shared):
@@ -162,7 +162,7 @@ def idle_sharing(
 
 
 def _undriven(linkage: Linkage, idle: tuple[str, ...]) -> str:
-    """Advice for cylinders that should share the load when only one of them is driven."""
+    """Advice for parallel cylinders that should share the load although only one is driven."""
     bodies = {c.body for _, c in linkage.connections if c.name in idle}
     free = [
         s.name

@@ -1,4 +1,4 @@
-"""Motion of a linkage: exact positions, velocities, accelerations and energies at every instant."""
+"""Motion of a linkage, with exact positions, velocities and accelerations at every instant."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from loads.motion.positions import Path
 from loads.motion.singular_positions import motion_blocked
 from pinbase.arrays import Complex, Floats
 
-# Instants at which a course evaluates its drives, in addition to those of their laws.
+# Instants at which a course evaluates its drives, in addition to the `pieces` of their laws.
 DRIVE_GRID_POINTS = 257
-# Of the course's fastest coordinate: the path of a slower point has no direction.
+# Relative to the fastest coordinate of the course: the path of a slower point has no direction.
 MIN_POINT_SPEED = 1e-9
-MAX_DENSE_COORDINATES = 30  # up to which condition numbers come from singular values
+MAX_DENSE_COORDINATES = 30  # largest system whose condition number comes from singular values
 CORNER_TIME_TOLERANCE = 1e-12  # of the whole time: an instant this close to a corner is at it
 
 # Positions (m), velocities and accelerations, (T, N) complex each
@@ -40,7 +40,7 @@ E = TypeVar("E", bound=Equations)
 class Instants(Generic[E]):
     """The motion of a linkage, in the plane or in space, at T instants.
 
-    mobility: of the linkage as drawn.
+    mobility: mobility of the linkage as drawn.
     times: (T,) s.
     drives, speeds, rates: (T, D) values of the drives (m or rad) and their first two derivatives.
     q, v, a: (T, n) coordinates and their first two derivatives.
@@ -75,7 +75,7 @@ class Instants(Generic[E]):
 
 @dataclass(frozen=True)
 class Motion(Instants[PlanarEquations]):
-    """The motion of a planar linkage at T instants; coordinates in rad, then in m."""
+    """The motion of a planar linkage at T instants; coordinates are in rad, then in m."""
 
     @property
     def loops(self) -> PlanarEquations:
@@ -84,7 +84,7 @@ class Motion(Instants[PlanarEquations]):
 
     @cached_property
     def factors(self) -> Factors:
-        """Orthogonal factors of the Jacobian at all instants, for one batch at a time."""
+        """Orthogonal factors of the Jacobian at all instants; to be used on one of the `parts`."""
         return self.loops.factors(self.pose)
 
     def solve(self, side: Floats) -> Floats:
@@ -109,7 +109,10 @@ class Motion(Instants[PlanarEquations]):
         return history
 
     def follow_each(self, several: Iterable[Points]) -> Iterator[PointMotion]:
-        """The same of several sets of points, each with the bits that it has alone."""
+        """Positions, velocities and accelerations of several sets of points, as by `follow`.
+
+        The results are the same to the last bit as those of each set alone.
+        """
         loops, pose = self.loops, self.pose
         places, speeds = loops.places(pose), loops.speeds(pose, self.v)
         rates, curvatures = loops.speeds(pose, self.a), loops.curvatures(pose, self.v)
@@ -134,14 +137,14 @@ class Motion(Instants[PlanarEquations]):
     def _points(
         self, several: Iterable[tuple[str, Point]]
     ) -> Iterator[tuple[Floats, Floats, Floats]]:
-        """The same of several points, each of an item."""
+        """Position, velocity and acceleration of several points (item, place as drawn)."""
         loops, index = self.loops, self.linkage.index
         points = (loops.points(np.array([index[i]]), np.array([number(p)])) for i, p in several)
         for place, velocity, acceleration in self.follow_each(points):
             yield pairs(place[:, 0]), pairs(velocity[:, 0]), pairs(acceleration[:, 0])
 
     def curvature(self, item: str, drawn: Point) -> Floats:
-        """Curvature of the path of an item's point, (T,) 1/m, positive to the left.
+        """Curvature of the path of an item's point, (T,) 1/m, positive for a turn to the left.
 
         It is NaN where the point is at rest.
         """
@@ -156,7 +159,7 @@ class Motion(Instants[PlanarEquations]):
         return self.point(self.linkage.carrier(joint), joint.at)
 
     def joints(self) -> Iterator[tuple[Floats, Floats, Floats]]:
-        """The same of all joints in their order."""
+        """Position, velocity and acceleration of the pins of all joints, in their order."""
         return self._points((self.linkage.carrier(j), j.at) for j in self.linkage.joints)
 
     def coordinate(self, of: Slider | Turn) -> tuple[Floats, Floats, Floats]:
@@ -171,7 +174,7 @@ class Motion(Instants[PlanarEquations]):
 
     @property
     def rubbing(self) -> Floats:
-        """Speeds (T, N) m/s of sliders and pins with friction, turns times the length scale."""
+        """Speeds (T, N) m/s of sliders and pins with friction; of pins times the length scale."""
         first = self.loops.frames - 1
         slides = [first + k for k, s in enumerate(self.linkage.sliders) if s.friction]
         turns = [
@@ -182,7 +185,7 @@ class Motion(Instants[PlanarEquations]):
         return np.concatenate([self.v[:, slides], *turns], axis=1)
 
     def _angular(self, coordinates: Floats, item: str) -> Floats:
-        """The column of an item's angle, (T,), of coordinates or rates (T, n)."""
+        """The column of an item's angle, (T,), in coordinates or rates (T, n); 0 on the ground."""
         f = self.loops.frame[self.linkage.index[item]]
         return coordinates[:, f - 1] if f else np.zeros(len(coordinates))
 
@@ -225,9 +228,9 @@ class Motion(Instants[PlanarEquations]):
 
 
 def side_by_side(histories: Sequence[Values], count: int) -> Values:
-    """N values and their first two derivatives, (T,) each, as three arrays (T, N).
+    """N histories of a value and its first two derivatives, (T,) each, as three arrays (T, N).
 
-    histories: one for each value; a structure has none. count: number of instants T.
+    histories: one for each value; a structure has none. count: number T of instants.
     """
     none = np.zeros((count, 0))
     values, speeds, rates = (np.stack([h[k] for h in histories], axis=1) if histories else none
@@ -238,8 +241,8 @@ def side_by_side(histories: Sequence[Values], count: int) -> Values:
 def _condition(part: Motion) -> Floats:
     """Condition numbers of a batch of instants, (T,).
 
-    Those of small systems come from singular values; for large systems these would take longer than
-    the motion itself, and serve only where the power method does not converge.
+    Small systems use singular values. For large systems singular values would take longer than the
+    motion itself, so they are used only where the power method does not converge.
     """
     condition = np.full(len(part), np.nan)
     if part.loops.columns > MAX_DENSE_COORDINATES:
@@ -260,7 +263,9 @@ class Followed(ABC, Generic[M]):
     def __init__(
         self, equations: Equations, laws: Sequence[Law], first: float, last: float
     ) -> None:
-        """Raises: LinkageError for too many or too few laws; MotionBlocked when the linkage cannot
+        """Follow the path of the linkage under the laws.
+
+        Raises: LinkageError for too many or too few laws; MotionBlocked when the linkage cannot
         follow them.
         """
         driven = equations.linkage.driven
@@ -278,7 +283,8 @@ class Followed(ABC, Generic[M]):
             ]
         )
         self.path = Path(equations, self._drives, grid)
-        # At all nodes of a short path the drives may be at rest: take their fastest instants, too.
+        # The drives may be at rest at all nodes of a short path, so the pace is also taken at the
+        # instants at which each drive is fastest.
         fastest = grid[np.abs(self._values(grid)[1]).argmax(axis=0)]
         rates = self._coordinates(np.union1d(self.path.nodes, fastest))[4]
         self.pace = float(np.abs(rates * equations.scale).max(initial=0.0))
@@ -288,7 +294,7 @@ class Followed(ABC, Generic[M]):
         """The motion at times (T,) s, in any order. Raises: MotionBlocked."""
 
     def _inside(self, times: Iterable[float]) -> Floats:
-        """Those of the times (s) that are inside the course, increasing."""
+        """The times (s) that are inside the course, unique and increasing."""
         return np.unique([t for t in times if self.first < t < self.last])
 
     def _drives(self, times: Floats) -> Floats:
@@ -298,7 +304,7 @@ class Followed(ABC, Generic[M]):
     def _values(self, times: Floats) -> tuple[Floats, Floats, Floats]:
         """Values of the drives and their first two derivatives at times (T,) s, (T, D) each.
 
-        At a corner, where one drive may end and another begin, they are those just before.
+        At a corner, where one drive may end and another begin, they are the values just before it.
         """
         if len(self.laws) > 1 and len(self.corners):
             close = CORNER_TIME_TOLERANCE * (self.last - self.first)
@@ -315,7 +321,7 @@ class Followed(ABC, Generic[M]):
         drives, speeds, rates = self._values(times)
         q = self.path.at(times)
         v, a, weakest = np.empty_like(q), np.empty_like(q), np.empty(len(q))
-        # J v = rates of the drives; J a = second rates, less the part quadratic in v.
+        # J v = rates of the drives; J a = second rates of the drives, less the part quadratic in v.
         for part in equations.parts(len(q)):
             pose = equations.pose(q[part])
             factors = equations.factors(pose)
@@ -348,7 +354,7 @@ class Course(Followed[Motion]):
 
 
 def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
-    """The motion under one law per drive at `times` (T,) s, followed from the first of them.
+    """The motion under one law per drive at `times` (T,) s, followed from the earliest time.
 
     Raises: LinkageError when the drives do not determine the position; MotionBlocked when the
     linkage cannot follow them.
@@ -357,5 +363,5 @@ def move(linkage: Linkage, laws: Sequence[Law], times: Floats) -> Motion:
 
 
 def at_rest(linkage: Linkage, drives: Sequence[float]) -> Motion:
-    """The linkage at rest, a motion of one instant. drives: their values, m or rad."""
+    """The linkage at rest, as a motion of one instant. drives: values of the drives, m or rad."""
     return move(linkage, [StateDrive(value) for value in drives], np.zeros(1))

@@ -1,4 +1,4 @@
-"""The equations of a planar linkage, with the names of what moves, carries load or stays open."""
+"""The equations of a planar linkage, with the names of members that move, carry load or gape."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ class PlanarEquations(Loops):
         return tuple(isinstance(d, Slider) for d in self.linkage.drives)
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """The needs of redundant links to close, besides their lengths, and what describes each."""
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
+        """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         return CLOSING_GEARS * bool(self.linkage.teeth)
 
     @cached_property
     def kutzbach(self) -> int:
         """Degrees of freedom by Kutzbach: 3 (links - 1) - 2 (pins and sliders) - pairs of teeth.
 
-        A pin at which k links meet counts k - 1 times; particles do not count. Welded bodies are
+        A pin at which k links meet counts k - 1 times. Particles do not count. Welded bodies are
         one link.
         """
         linkage = self.linkage
@@ -50,8 +50,8 @@ class PlanarEquations(Loops):
     ) -> tuple[str, ...]:
         """Names of the bodies that move in any of k motions.
 
-        pose: at a single instant. rates: (k, n) of the coordinates.
-        least: speed of a body that moves, relative to the fastest.
+        pose: pose of a single instant. rates: (k, n) rates of the coordinates.
+        least: speed above which a body moves, relative to the fastest body.
         """
         if not len(rates):
             return ()
@@ -67,14 +67,14 @@ class PlanarEquations(Loops):
         return tuple(b.name for b, v in named if v > least * largest.max())
 
     def advice(self, pose: Pose, rates: Floats) -> str:
-        """Nothing: what stops bodies in the plane is as many connections or drives."""
+        """No advice (""): in the plane any connections or drives, as many as needed, would do."""
         return ""
 
     def stressed(self, pose: Pose, multipliers: Floats) -> tuple[str, ...]:
-        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces;
-        of the sliders where these alone do.
+        """Names of the connections and teeth that carry any of k self-equilibrated sets of forces.
 
-        pose: at a single instant. multipliers: (rows, k), unit vectors.
+        Sliders are named only where no connection or teeth carry any.
+        pose: pose of a single instant. multipliers: (rows, k), unit vectors.
         """
         closing = self.closing_forces(pose, multipliers.T)
         if not closing.size:
@@ -94,7 +94,7 @@ class PlanarEquations(Loops):
     def apart(self, q: Floats, drives: Floats) -> tuple[tuple[str, ...], float]:
         """Names of the members that do not meet at coordinates q (n,), and the largest gap, m.
 
-        drives: (D,) values. Teeth out of step are named, but have no gap.
+        drives: (D,) values of the drives, m or rad. Teeth out of step are named, but have no gap.
         """
         pose = self.pose(q[None])
         teeth = self.linkage.teeth
@@ -111,7 +111,7 @@ class PlanarEquations(Loops):
 
 
 def is_particle(linkage: Linkage, name: str) -> bool:
-    """Whether a body is a particle at its connection."""
+    """Whether a body is a particle: it has no inertia and is not part of a slider."""
     body = next(b for b in linkage.bodies if b.name == name)
     slides = any(name in (s.base, s.moving) for s in linkage.sliders)
     return body.inertia is None and not slides

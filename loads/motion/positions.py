@@ -1,4 +1,4 @@
-"""Positions under given drives: continuation that cannot jump branches, then Newton's method."""
+"""Positions under given drives, by continuation that cannot jump branches and Newton's method."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from pinbase.arrays import Floats
 
 NEWTON_TOLERANCE = 1e-10  # last correction, over the length scale; the error is its square
 CLOSURE_TOLERANCE = 1e-11  # largest gap of a closed loop, over the length scale
-OPEN_STEPS = 64  # of the drives, on which it is seen how far a loop that does not close is apart
+OPEN_STEPS = 64  # steps of the drives in the search for the widest gap of a loop that stays open
 MAX_STEP_TURN = 0.25  # rad (or length scales) that a coordinate may move in a continuation step
 MAX_CONTRACTION_RATIO = 0.25  # largest ratio of a Newton correction to the one before
-MIN_PIVOT_RATIO = 1e-10  # smallest to largest pivot: below it rank is lost
-# rad (or length scales) that a coordinate may deviate as the drives deviate from a straight line.
+MIN_PIVOT_RATIO = 1e-10  # ratio of smallest to largest pivot, below which rank is lost
+# rad (or length scales) by which a coordinate may deviate because the drives leave a straight line.
 MAX_LINE_DEVIATION = 0.02
 
 Drives = Callable[[Floats], Floats]
@@ -30,7 +30,7 @@ class _Lost(Exception):
 
 
 class _Open(Exception):
-    """The equations contradict each other: at the best coordinates, q (n,), loops stay open."""
+    """The equations contradict each other: loops stay open at the best coordinates, q (n,)."""
 
     def __init__(self, q: Floats) -> None:
         self.q = q
@@ -42,9 +42,9 @@ class _Step:
     """One step of a path, along which the drives are nearly on a straight line.
 
     begin, end: times, s.
-    start, run: (D,) values of the drives at its start, and their change.
-    q, rate, bend: (2, n) coordinates at its ends, and their first and second derivatives by the
-    fraction of `run`.
+    start, run: (D,) values of the drives at the start of the step, and their change in the step.
+    q, rate, bend: (2, n) coordinates at both ends of the step, and their first and second
+    derivatives with respect to the fraction of `run`.
     """
 
     begin: float
@@ -59,17 +59,17 @@ class _Step:
 class Path:
     """The coordinates as functions of time, followed from the drawn position.
 
-    Steps are so small that Newton's method contracts from the first iteration on and that the
-    drives are nearly on a straight line: another branch is never in reach, and the result at an
-    instant does not depend on which others are requested.
+    Steps are so small that Newton's method contracts from the first iteration on, and that the
+    drives are nearly on a straight line. So the solution cannot jump to another branch, and the
+    result at an instant does not depend on which other instants are requested.
     """
 
     def __init__(self, loops: Equations, drives: Drives, grid: Floats) -> None:
         """Follow the drives from the drawing to their first values, then through time.
 
-        drives: gives their values (T, D) at times (T,) s.
-        grid: (G,) s, increasing, from the first time to the last, dense enough to show everything
-        that the drives do.
+        drives: function that returns the values (T, D) of the drives at times (T,) s.
+        grid: (G,) s, increasing, from the first time to the last, dense enough to show every motion
+        of the drives.
 
         Raises: MotionBlocked where the linkage cannot follow.
         """
@@ -88,8 +88,7 @@ class Path:
     def at(self, times: Floats) -> Floats:
         """Coordinates (T, n) at times (T,) s.
 
-        They are estimated by the quintic along the path and corrected by Newton's method, batch by
-        batch.
+        The quintic of each step gives an estimate, which Newton's method corrects, in batches.
 
         Raises: MotionBlocked where the linkage cannot follow.
         """
@@ -126,8 +125,8 @@ class Path:
             end = last if step >= last - time else time + step
             target = drives(np.array([end]))[0]
             between = marks[(grid > time) & (grid < end)]
-            # Halve the step until the prediction is good enough; where that does not help, the
-            # linkage cannot follow.
+            # Halve the step until the prediction is good enough. If even the smallest step fails,
+            # the linkage cannot follow.
             try:
                 q1 = self._next(q, factors, start, target, between)
             except (_Lost, _Open) as problem:
@@ -156,12 +155,13 @@ class Path:
     def _next(
         self, q: Floats, factors: Factors, start: Floats, target: Floats, between: Floats
     ) -> Floats:
-        """Coordinates (n,) at the end of a step from coordinates q (n,), with their factors.
+        """Coordinates (n,) at the end of a step from coordinates q (n,).
 
+        factors: factors of the equations at q.
         start, target: (D,) values of the drives at both ends of the step.
-        between: (M, D) values that they pass.
+        between: (M, D) values of the drives at grid times within the step.
 
-        Raises: _Lost when the step is too large; _Open.
+        Raises: _Lost when the step is too large; _Open where loops stay open.
         """
         loops, run = self.loops, target - start
         if not run.any() and not (between - start).any():
@@ -181,7 +181,9 @@ class Path:
     def _straight(self, factors: Factors, passed: Floats, run: Floats) -> bool:
         """Whether the drives stay near the straight line of a step.
 
-        passed: (M, D) values that they pass, relative to those at its start. run: (D,) its change.
+        factors: factors of the equations at the start of the step.
+        passed: (M, D) values of the drives within the step, relative to those at its start.
+        run: (D,) change of the drives in the step.
         """
         deviation = passed - _fraction(self.loops, passed, run)[:, None] * run
         size = np.abs(factors.solve(drive_side(self.loops, deviation))).max(initial=0.0)
@@ -196,7 +198,10 @@ class Path:
         q: tuple[Floats, Floats],
         factors: tuple[Factors, Factors],
     ) -> _Step:
-        """The step with the derivatives of the coordinates. q, factors: at both its ends."""
+        """The step with the derivatives of the coordinates.
+
+        q, factors: coordinates and factors of the equations at both ends of the step.
+        """
         loops = self.loops
         side = drive_side(loops, run[None])
         rate = np.concatenate([f.solve(side) for f in factors]) / loops.scale
@@ -211,7 +216,7 @@ class Path:
 
     @staticmethod
     def _furthest(start: Floats, ahead: Floats) -> Floats:
-        """Those of the drives' values ahead (M, D) that are furthest from `start` (D,)."""
+        """The row of the drives' values `ahead` (M, D) that is farthest from `start` (D,)."""
         return np.asarray(ahead[int(np.abs(ahead - start).max(axis=1, initial=0.0).argmax())])
 
     def _crossed(
@@ -219,7 +224,8 @@ class Path:
     ) -> MotionBlocked:
         """The error at the singular position between two instants, located by bisection.
 
-        times: of the step, s. q, q1: (n,) coordinates at its ends. ahead: (M, D) drives to come.
+        times: both ends of the step, s. q, q1: (n,) coordinates at these times.
+        ahead: (M, D) values of the drives at later times.
         """
         (low, high), (begin, end) = times, times
         at, factors = q, self._factors(q)
@@ -243,8 +249,8 @@ class Path:
     def _guess(self, times: Floats, values: Floats) -> Floats:
         """Estimated coordinates (T, n) at times (T,) s, with the drives at `values` (T, D).
 
-        Along the straight line of a step they follow the Hermite quintic; for the drives' deviation
-        from it, the derivatives at the step's start.
+        The Hermite quintic gives the motion along the straight line of a step. The drives'
+        deviation from this line is added linearly, by the derivatives at the step's start.
         """
         loops = self.loops
         k = np.searchsorted(self._ends[:-1], times)
@@ -290,10 +296,12 @@ def _quintic(s: Floats, q: Floats, rate: Floats, bend: Floats) -> Floats:
 
 
 def _widest(loops: Equations, q: Floats, reached: Floats, wanted: Floats) -> Floats:
-    """Coordinates (n,) at which loops that stay open are furthest apart, on a straight way of the
-    drives and as far as they can be followed on it; at best, by least squares.
+    """Coordinates (n,) with the widest gap of the loops on a straight way of the drives.
 
-    q: (n,) near `reached`. reached, wanted: (D,) values of the drives.
+    The way is followed as far as Newton's method converges to least-squares solutions.
+
+    q: (n,) coordinates near `reached`.
+    reached, wanted: (D,) values of the drives at both ends of the way, m or rad.
     """
     widest, largest = q, 0.0
     for part in np.linspace(0.0, 1.0, OPEN_STEPS + 1)[1:]:
@@ -317,10 +325,10 @@ def _newton(
 ) -> Floats:
     """Coordinates (T, n) that satisfy the equations, by Newton's method from q (T, n).
 
-    Every correction must be at most MAX_CONTRACTION_RATIO of the one before.
+    Every correction must be at most MAX_CONTRACTION_RATIO of the previous one.
     drives: (T, D) values of the drives.
-    first: largest first correction, m.
-    closure: largest gap of a loop, over the length scale.
+    first: largest allowed first correction, m.
+    closure: largest allowed gap of a loop, over the length scale.
 
     Raises: _Lost without such contraction; _Open where the equations contradict each other.
     """
@@ -346,7 +354,7 @@ def _newton(
             return q
         if size > MAX_CONTRACTION_RATIO * before and size > 1e-9 * scale:
             raise _Lost
-        if size > 1e-2 * scale:  # after a small correction the factors still serve
+        if size > 1e-2 * scale:  # after a smaller correction the old factors are good enough
             factors = None
         before = size
     raise _Lost

@@ -1,9 +1,10 @@
 """Quantities between the samples of a motion, by piecewise polynomials, refined adaptively.
 
-Time is divided at its corners (where something may jump) into spans, and these into panels of nine
-equidistant instants. A panel's polynomial must predict the eight instants halfway between, and the
-samples inside, to the tolerance; else the panel is halved. Once it does, the result uses its two
-halves, of nine instants each, which are 2^9 times as accurate.
+Time is divided at its corners (where something may jump) into spans, and each span into panels of
+nine equidistant instants. The polynomial of a panel must predict the values at the eight instants
+halfway between, and at the samples inside, to the tolerance; otherwise the panel is halved. For a
+panel that passes, the result uses its two halves, of nine instants each, which are 2^9 times as
+accurate.
 """
 
 from __future__ import annotations
@@ -16,19 +17,21 @@ import numpy as np
 from pinbase.arrays import Floats
 
 PANEL_DEGREE = 8
-INTERPOLATION_TOLERANCE = 1e-6  # of the largest magnitude of a quantity, or of those in its group
-MIN_PANELS = 16  # over the whole time, before any is halved
+# Relative to the largest magnitude of a quantity, or of all quantities of its group.
+INTERPOLATION_TOLERANCE = 1e-6
+MIN_PANELS = 16  # panels over the whole time before the first halving
 SAMPLE_BLOCK = 8192  # samples whose errors are in memory together
-# Of a span: it is evaluated this far inside its corners, to see only one side of a jump.
+# Relative to a span: its end instants lie this far inside its corners, on one side of any jump.
 CORNER_INSET = 1e-6
-# Of the whole time: corners this close are one. Of a maximum: so is a value this close at an end.
+# Relative to the whole time: corners this close are merged. Relative to a maximum: a value at the
+# first or last time that is this close to the maximum is taken for the maximum.
 CORNER_MERGE_TOLERANCE = 1e-9
-MAXIMUM_TOLERANCE = 1e-12  # of a maximum: a value larger by no more is not larger
+MAXIMUM_TOLERANCE = 1e-12  # relative increase that counts as a larger maximum
 MAX_PANEL_HALVINGS = 24
-# Of the largest of all quantities: the tolerance of a smaller quantity is relative to this.
+# Relative to the largest of all quantities: a smaller quantity has the tolerance of this size.
 MIN_RESOLVED_SHARE = 1e-6
-BISECTION_STEPS = 60  # until the last digit of a time is known
-SEARCH_POINTS = 33  # of a search for a maximum, in a panel, then between two of these points
+BISECTION_STEPS = 60  # enough for the last digit of a time
+SEARCH_POINTS = 33  # points of a search for a maximum, over a panel, then around the best point
 
 At = Callable[[Floats], Floats]
 
@@ -37,7 +40,7 @@ _CHEBYSHEV_FIT = np.linalg.inv(np.polynomial.chebyshev.chebvander(_PANEL_NODES, 
 
 
 def _weights(x: Floats) -> Floats:
-    """Weights (N, nodes) of the values at the nodes in the polynomial at x (N,) in [-1, 1]."""
+    """Weights (N, nodes) of the nodal values in a panel's polynomial at x (N,) in [-1, 1]."""
     return np.asarray(np.polynomial.chebyshev.chebvander(x, PANEL_DEGREE) @ _CHEBYSHEV_FIT)
 
 
@@ -45,9 +48,9 @@ def _weights(x: Floats) -> Floats:
 class _Panels:
     """P panels with the values of K quantities.
 
-    low, high: (P,) s, first and last instants.
-    values: (P, nodes, K) at equidistant instants.
-    rough: (P,) whether the polynomial may overshoot and is limited to the range of its nodes.
+    low, high: (P,) first and last instants of each panel, s.
+    values: (P, nodes, K) values at equidistant instants.
+    rough: (P,) whether the polynomial may overshoot, and is limited to the range of its nodes.
     """
 
     low: Floats
@@ -97,10 +100,10 @@ class _Panels:
 class Resolved:
     """K quantities over a time, as piecewise polynomials.
 
-    times, values: (N,) s, increasing, and (N, K): all instants evaluated, with the samples.
+    times, values: (N,) s, increasing, and (N, K): all instants evaluated, including the samples.
     unresolved: (J, 2) s, intervals in which the polynomials are less accurate than required.
-    ends: (P + 1,) s, between which each panel's polynomial holds; at a corner it has the limit from
-    its side.
+    ends: (P + 1,) s, times between which each panel's polynomial holds; at a corner each of two
+    panels has the limit from its side.
     """
 
     times: Floats
@@ -111,16 +114,16 @@ class Resolved:
 
     @property
     def nodes(self) -> Floats:
-        """Instants of all panels, (N,) s, increasing, between which little happens."""
+        """Instants of all panels, (N,) s, increasing; the quantities change little in between."""
         return np.unique(_Panels.times(self.panels.low, self.panels.high, _PANEL_NODES))
 
     def quantities(self, chosen: slice) -> Resolved:
-        """The same with only some of the quantities."""
+        """The result for the chosen quantities only."""
         panels = replace(self.panels, values=self.panels.values[:, :, chosen])
         return replace(self, values=self.values[:, chosen], panels=panels)
 
     def interpolate(self, times: Floats) -> Floats:
-        """Values (T, K) at times (T,) s; at a corner those before it."""
+        """Values (T, K) at times (T,) s; at a corner, the values just before it."""
         which = np.searchsorted(self.ends, times, side="left") - 1
         return self.panels.at(np.clip(which, 0, len(self.panels.low) - 1), times)
 
@@ -136,14 +139,14 @@ class Resolved:
         return np.asarray(0.5 * (low + high))
 
     def mean(self, of: Callable[[Floats], Floats] = lambda values: values) -> Floats:
-        """Mean over time, (M,). of: function of values (T, K) that gives (T, M)."""
+        """Mean over time, (M,), of a function. of: from values (T, K) to (T, M)."""
         last = self.ends[-1:]
         return np.asarray(self.integral(last, of)[0] / (last - self.ends[0]))
 
     def integral(self, times: Floats, of: Callable[[Floats], Floats]) -> Floats:
         """Integral from the first time to `times` (T,) s, (T, M), by Gauss quadrature in panels.
 
-        of: function of values (N, K) that gives (N, M).
+        of: function to be integrated, from values (N, K) to (N, M).
         """
         x, weight = np.polynomial.legendre.leggauss(2 * PANEL_DEGREE)
 
@@ -161,9 +164,10 @@ class Resolved:
         return np.asarray(before + between(k, self.ends[k], times))
 
     def largest(self, of: Callable[[Floats], Floats] = np.abs) -> tuple[Floats, Floats]:
-        """Largest values over time and their times, (M,) each; of equal ones that at an end.
+        """Largest values over time and their times, (M,) each.
 
-        of: function of values (T, K) that gives (T, M).
+        Of equal values, one at the first or last time is preferred.
+        of: function to be maximised, from values (T, K) to (T, M).
         """
         low, high = self.ends[:-1], self.ends[1:]
         x = np.linspace(-1.0, 1.0, SEARCH_POINTS)
@@ -171,7 +175,7 @@ class Resolved:
         values = of(self._inside(times))
         top = values.argmax(axis=0)
         best, when = values[top, np.arange(len(top))], times.ravel()[top]
-        # Search more closely around the largest point; at the end of a panel, also in the next.
+        # Refine around the largest point; if it is at the end of a panel, also in the next panel.
         panel, point = np.divmod(top, SEARCH_POINTS)
         neighbour = (point == SEARCH_POINTS - 1).astype(int) - (point == 0)
         for searched in (panel, np.clip(panel + neighbour, 0, len(low) - 1)):
@@ -184,7 +188,10 @@ class Resolved:
     def _near(
         self, of: Callable[[Floats], Floats], best: Floats, when: Floats, panel: np.ndarray
     ) -> tuple[Floats, Floats]:
-        """Largest values and their times, (M,) each, near known ones, each in its panel (M,)."""
+        """Largest values and their times, (M,) each, by refinement around known points.
+
+        best, when: (M,) known values and their times, s. panel: (M,) panel of each search.
+        """
         low, high = self.ends[:-1][panel], self.ends[1:][panel]
         x, rows = np.linspace(-1.0, 1.0, SEARCH_POINTS), np.arange(len(panel))
         at, width = np.clip(when, low, high), (high - low) / (SEARCH_POINTS - 1)
@@ -200,7 +207,7 @@ class Resolved:
         return best, when
 
     def _inside(self, times: Floats) -> Floats:
-        """Values (P N, K) at times (P, N) s, each row by the polynomial of its panel."""
+        """Values (P N, K) at times (P, N) s, each row of times by the polynomial of its panel."""
         return self.panels.at(np.repeat(np.arange(len(times)), times.shape[1]), times.ravel())
 
 
@@ -214,12 +221,12 @@ def resolved(
 ) -> Resolved:
     """K quantities at `times` (T,) s, increasing, and at as many instants between as necessary.
 
-    at: gives the values (T, K) at times (T,) s, in any order.
+    at: function that returns the values (T, K) at times (T,) s, in any order.
     corners: times at which values or their derivatives may jump, s.
-    max_evaluations: largest number after the first round; intervals that remain are
-    `unresolved`.
-    groups: (K,) number of each quantity's group, in which the tolerance is relative to the largest
-    magnitude of all; by default each quantity is its own group.
+    max_evaluations: largest number of instants evaluated halfway between nodes, unless the first
+    round alone takes more; intervals that then remain are `unresolved`.
+    groups: (K,) number of each quantity's group. The tolerance is relative to the largest magnitude
+    in the group; by default each quantity is a group of its own.
     known: (T, K) values at `times`, if already known.
     """
     ends = _spans(times, corners)
@@ -237,15 +244,15 @@ def resolved(
         solved[1][1].reshape(len(low), PANEL_DEGREE + 1, -1),
         np.zeros(len(low), dtype=bool),
     )
-    done, left = list[_Panels](), list[_Panels]()
+    done, unresolved = list[_Panels](), list[_Panels]()
     middle = 0.5 * (_PANEL_NODES[1:] + _PANEL_NODES[:-1])
     weights, used = _weights(middle), 0
-    # In each round, evaluate all active panels halfway between their nodes: those whose polynomial
-    # predicted the values are done, the others are halved.
+    # In each round, evaluate all active panels halfway between their nodes. Panels whose polynomial
+    # predicted the values are done; the others are halved.
     for depth in range(MAX_PANEL_HALVINGS + 1):
         between = _Panels.times(active.low, active.high, middle)
         if used and used + between.size > max_evaluations:
-            left.append(active)
+            unresolved.append(active)
             break
         new = at(between.ravel())
         used += between.size
@@ -261,8 +268,8 @@ def resolved(
         if not len(active.low):
             break
         if depth == MAX_PANEL_HALVINGS:
-            left.append(active)
-    return _gathered(solved, done, left, ends)
+            unresolved.append(active)
+    return _gathered(solved, done, unresolved, ends)
 
 
 def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
@@ -280,8 +287,8 @@ def _spans(times: Floats, corners: Floats | tuple[float, ...]) -> Floats:
 def _first_panels(ends: Floats) -> tuple[Floats, Floats]:
     """Low and high ends of the first panels, (P,) s each.
 
-    Panels differ in width, so that their instants never coincide with the period of a periodic
-    quantity, which would then look constant.
+    Panels differ in width. Otherwise their instants could coincide with the period of a periodic
+    quantity, which would look constant.
     """
     count = max(1, -(-MIN_PANELS // (len(ends) - 1)))
     width = 1.0 + 0.5 * np.mod(np.arange(count) * 0.6180339887, 1.0)
@@ -298,7 +305,7 @@ def _largest(errors: Floats) -> Floats:
 
 
 def _scale(largest: Floats, groups: Sequence[int] | None) -> Floats:
-    """Magnitudes (K,) to which the tolerance is relative; one where everything is zero.
+    """Magnitudes (K,) to which the tolerance is relative; 1 where everything is zero.
 
     largest: (K,) largest magnitude of each quantity.
     """
@@ -313,7 +320,7 @@ def _scale(largest: Floats, groups: Sequence[int] | None) -> Floats:
 def _sample_errors(
     panels: _Panels, times: Floats, values: Floats, scale: Floats
 ) -> tuple[np.ndarray, Floats]:
-    """Panel and error of its polynomial, over the scale, at every sample inside a panel."""
+    """The panel of every sample inside a panel, and its polynomial's error over the scale there."""
     which = np.searchsorted(panels.low, times, side="right") - 1
     inside = (which >= 0) & (times < panels.high[which])
     which, rows = which[inside], np.flatnonzero(inside)
@@ -328,30 +335,34 @@ def _sample_errors(
 
 
 def _gathered(
-    known: list[tuple[Floats, Floats]], done: list[_Panels], left: list[_Panels], ends: Floats
+    known: list[tuple[Floats, Floats]], done: list[_Panels], unresolved: list[_Panels], ends: Floats
 ) -> Resolved:
-    """The result from all evaluations, resolved panels, panels left rough, and ends of spans."""
+    """The result of the refinement.
+
+    known: times and values of all evaluations. done: resolved panels.
+    unresolved: panels that are not resolved and become `rough`. ends: ends of the spans, s.
+    """
     times, first = np.unique(np.concatenate([t for t, _ in known]), return_index=True)
-    parts = done + [replace(p, rough=np.ones(len(p.low), dtype=bool)) for p in left]
+    parts = done + [replace(p, rough=np.ones(len(p.low), dtype=bool)) for p in unresolved]
     low, high, values, rough = (
         np.concatenate([getattr(p, field.name) for p in parts]) for field in fields(_Panels)
     )
     panels = _Panels(low, high, values, rough)[np.argsort(low, kind="stable")]
     cuts = np.concatenate([ends[:1], 0.5 * (panels.high[:-1] + panels.low[1:]), ends[-1:]])
-    for end in ends[1:-1]:  # exactly at a corner, in spite of round-off on its two sides
+    for end in ends[1:-1]:  # put the cut exactly at the corner, in spite of round-off
         cuts[np.abs(cuts - end).argmin()] = end
-    unresolved = [np.stack([p.low, p.high], axis=1) for p in left]
+    intervals = [np.stack([p.low, p.high], axis=1) for p in unresolved]
     return Resolved(
         times=times,
         values=np.concatenate([v for _, v in known])[first],
-        unresolved=_joined(np.concatenate(unresolved)) if left else np.empty((0, 2)),
+        unresolved=_joined(np.concatenate(intervals)) if unresolved else np.empty((0, 2)),
         ends=cuts,
         panels=panels,
     )
 
 
 def _joined(intervals: Floats) -> Floats:
-    """Intervals (J, 2), increasing, in which those that touch are joined."""
+    """Increasing intervals (J, 2), in which intervals that touch are joined."""
     intervals = intervals[np.argsort(intervals[:, 0], kind="stable")]
     starts = np.concatenate([[True], intervals[1:, 0] > intervals[:-1, 1]])
     return np.stack([intervals[starts, 0], intervals[np.append(starts[1:], True), 1]], axis=1)

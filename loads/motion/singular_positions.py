@@ -23,9 +23,10 @@ KIND_CODES: dict[Kind, str] = {
     "change point": "change-point",
     "open": "does-not-close",
 }
-SNAP_SPEED_RATIO = 1e-2  # of the fastest body: near a dead point, a slower one counts as at rest
-AS_DRAWN = 1e-3  # of the way of a drive, up to which a linkage has not moved
-MAX_LISTED_NAMES = 6  # in a message
+# Relative to the fastest body: near a dead point, a slower body counts as at rest.
+SNAP_SPEED_RATIO = 1e-2
+AS_DRAWN = 1e-3  # fraction of the way of a drive, up to which the linkage counts as not moved
+MAX_LISTED_NAMES = 6  # largest number of names in a list in a message
 Show = Callable[[float, bool], str]
 
 
@@ -35,7 +36,7 @@ def in_si(value: float, slides: bool) -> str:
 
 
 def _listed(names: tuple[str, ...]) -> str:
-    """The names as text; of many, the first ones and the number of the others."""
+    """The names as text; if there are many, the first names and the number of the others."""
     if len(names) <= MAX_LISTED_NAMES:
         return ", ".join(names)
     return (
@@ -46,11 +47,12 @@ def _listed(names: tuple[str, ...]) -> str:
 class MotionBlocked(LinkageError):
     """The linkage cannot follow its drives.
 
-    kind: of the position that prevents it.
+    kind: kind of the position that blocks the motion.
     reached, wanted: (D,) values of the drives, m or rad.
-    bodies: that can move there with the drives locked.
-    connections: whose forces are unbounded there; for loops that stay open, those that do not meet.
-    gap: the largest distance by which these miss each other, m; 0 where only teeth do.
+    bodies: names of the bodies that can move there with the drives locked.
+    connections: names of the connections whose forces are unbounded there; for loops that stay
+    open, of the members that do not meet.
+    gap: largest distance by which these members miss each other, m; 0 where only teeth do not meet.
     """
 
     def __init__(
@@ -64,14 +66,20 @@ class MotionBlocked(LinkageError):
         gap: float = 0.0,
     ) -> None:
         self.kind, self.gap = kind, gap
-        self.driven, self.besides_lengths = equations.linkage.driven, equations.besides_lengths
+        self.driven, self.closing_conditions = (
+            equations.linkage.driven,
+            equations.closing_conditions,
+        )
         self.along_lengths, self.drawn = equations.along_lengths, equations.drawn_drives
         self.reached, self.wanted = reached, wanted
         self.bodies, self.connections = bodies, connections
         super().__init__(self.message(), KIND_CODES[kind])
 
     def message(self, show: Show = in_si) -> str:
-        """The message: what is wrong and what to do. show: formats a drive's value."""
+        """The message: what is wrong and what to do.
+
+        show: formats a drive's value; its second argument tells lengths (true) from angles.
+        """
 
         def at(values: Floats) -> str:
             named = zip(self.driven, values, self.along_lengths, strict=True)
@@ -80,8 +88,8 @@ class MotionBlocked(LinkageError):
         bodies, connections = _listed(self.bodies), _listed(self.connections)
         if self.kind == "open":
             apart = f" (at best {show(self.gap, True)} apart)" if self.gap else ""
-            what = "".join(f" or {decides}" for decides, _ in self.besides_lengths)
-            where = "".join(f" and {described}" for _, described in self.besides_lengths)
+            what = "".join(f" or {decides}" for decides, _ in self.closing_conditions)
+            where = "".join(f" and {described}" for _, described in self.closing_conditions)
             moved = np.abs(self.reached - self.drawn) > AS_DRAWN * np.abs(self.wanted - self.drawn)
             beyond = f"does not close beyond {at(self.reached)}"
             if not moved.any():
@@ -113,7 +121,7 @@ def motion_blocked(
     """The error of a motion that is blocked near coordinates q (n,).
 
     reached, wanted: (D,) values of the drives, m or rad.
-    opened: (n,) coordinates at which loops stay open, if that is what blocks it.
+    opened: (n,) coordinates at which loops stay open, if open loops block the motion.
     """
     if opened is not None:
         names, gap = equations.apart(opened, reached)

@@ -13,17 +13,17 @@ from loads.linkage.linkage import Linkage, LinkageError
 from loads.linkage.parts import GROUND
 from pinbase.arrays import Complex, Floats, Ints
 
-LENGTH_ROUND_OFF = 1e-14  # of a length: the remainder where equal lengths cancel
+LENGTH_ROUND_OFF = 1e-14  # relative to a length: the remainder where equal lengths cancel
 
 
 @dataclass(frozen=True)
 class LoopEdge:
     """A member of the tree, which joins some items to the ground.
 
-    slides: whether it is a slider; otherwise it is a connection.
-    which: its number.
-    away: the items on the side away from the ground.
-    forward: whether the connection's body (the slider's moving body) is among them.
+    slides: whether the member is a slider; otherwise it is a connection.
+    which: number of the slider or connection.
+    away: numbers of the items on the side away from the ground.
+    forward: whether the connection's body (the slider's moving body) is on that side.
     """
 
     slides: bool
@@ -33,7 +33,7 @@ class LoopEdge:
 
 
 def ends_of(linkage: Linkage, slides: bool, which: int) -> tuple[int, int]:
-    """Numbers of the items that a slider or connection joins: its (moving) body and its carrier."""
+    """Numbers of the items that a slider or connection joins: (moving) body and base or carrier."""
     if slides:
         s = linkage.sliders[which]
         return linkage.index[s.moving], linkage.index[s.base]
@@ -50,8 +50,8 @@ def _welds(linkage: Linkage) -> list[tuple[int, int]]:
 def frames(linkage: Linkage) -> tuple[int, Ints]:
     """Number of frames, and the frame of every item, (items + ground,); 0 is the ground's.
 
-    Items that slide on each other or are welded share a frame. Pins and particles have no angle and
-    are given the ground's frame, on which their positions do not depend.
+    Items that slide on each other or are welded share a frame. Floating pins and particles have no
+    angle; their frame is the ground's, and does not affect their positions.
     """
     index = linkage.index
     joined = _Sets(len(index))
@@ -71,14 +71,16 @@ def frames(linkage: Linkage) -> tuple[int, Ints]:
 
 
 def shortest(gaps: Complex) -> Floats:
-    """Whole numbers (K, K) that combine gaps (n, K) into ones with few nonzeros.
+    """Whole numbers (K, K) that combine gaps (n, K) into gaps with few nonzeros.
 
-    The combinations are sums and differences of two gaps at a time: where two loops run along the
-    same bodies, their difference no longer contains these.
+    Each combination is a sum or difference of two gaps: where two loops run along the same bodies,
+    their difference does not contain these bodies.
     """
     count = gaps.shape[1]
     combined, gaps = np.eye(count), gaps.copy()
     size = np.abs(gaps).max(initial=0.0)
+    # Replace a gap, those with most nonzeros first, by its sum or difference with another gap as
+    # long as this reduces its number of nonzeros.
     improved = True
     while improved:
         improved = False
@@ -103,7 +105,7 @@ class _Sets:
         self._parent = list(range(count))
 
     def of(self, i: int) -> int:
-        """The set of item i, named by one of its items."""
+        """The set of item i, identified by one of its items."""
         while self._parent[i] != i:
             i = self._parent[i]
         return i
@@ -118,9 +120,9 @@ class _Sets:
 def spanning_tree(linkage: Linkage) -> tuple[tuple[LoopEdge, ...], tuple[tuple[bool, int], ...]]:
     """Edges of a spanning tree, from the ground outwards, and the members that close loops.
 
-    The latter are pairs (slides, which). Welds and sliders are taken into the tree first, so that
-    bodies of one frame are joined by them, and a loop equation contains no rotation of a frame
-    against itself. Welds are in neither list, as nothing moves there.
+    The latter are pairs (slides, which). Welds and sliders enter the tree first. So they join the
+    bodies of one frame, and no loop equation contains a rotation of a frame relative to itself.
+    Welds are in neither list, because nothing moves at a weld.
 
     Raises: LinkageError for bodies that nothing joins to the ground.
     """

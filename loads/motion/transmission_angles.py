@@ -1,9 +1,9 @@
 """Transmission angles, a measure of how effectively a link drives the joint that it moves.
 
-The force of a link with two joints acts along it. The transmission angle is 90 degrees minus the
-angle between the link and the velocity of its far joint: 90 is best, at 0 the link cannot move the
-joint (a dead point). For a four-bar it is the textbooks' angle between coupler and follower (Alt,
-1932).
+The force of a link with two joints acts along the link. The transmission angle is 90 degrees minus
+the angle between the link and the velocity of the joint that it moves. An angle of 90 degrees is
+best; at 0 the link cannot move the joint (a dead point). For a four-bar it is the textbooks' angle
+between coupler and follower (Alt, 1932).
 """
 
 from __future__ import annotations
@@ -19,17 +19,17 @@ from loads.motion.motion import Motion
 from loads.motion.planar_equations import is_particle
 from pinbase.arrays import Floats
 
-MIN_BODY_SPEED = 1e-9  # of the fastest body: a slower one is at rest
+MIN_BODY_SPEED = 1e-9  # relative to the fastest body: a slower body counts as at rest
 
 
 def transmission_angles(motion: Motion) -> dict[tuple[str, str], Floats]:
     """Transmission angles, (T,) rad, by link and joint.
 
-    They are of links with two joints, neither of them at a body at rest, where the drive moves what
-    is at a joint through the link alone: at an angle of 0 that can move without the drive. Drives
-    are taken one at a time with the others locked; where several move a link, the angle is the
-    smallest. It depends on the direction of velocities only, so it is also defined while the
-    linkage is at rest.
+    A link has a transmission angle at a joint if it has two joints, neither at a body at rest, and
+    the drive moves the other bodies of this joint only through the link. At an angle of 0 these
+    bodies can move without the drive. Drives are taken one at a time with the others locked; where
+    several drives move a link, the smallest angle counts. The angle depends only on the direction
+    of velocities, so it is also defined while the linkage is at rest.
     """
     linkage, loops = motion.linkage, motion.loops
     out: dict[tuple[str, str], Floats] = {}
@@ -78,10 +78,9 @@ def _angles(
 def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Joint, Joint]]:
     """Links with a transmission angle, and their two joints.
 
-    They are the moving bodies that have exactly two joints, slide on nothing and are welded to
-    nothing, on which neither teeth nor drives act, so that only a force along them holds what they
-    move, whose joints touch no body at rest, and which turn relative to another body at both
-    joints.
+    Such a link moves, has exactly two joints, no slider and no weld, and neither teeth nor the
+    torque of a drive act on it: it can transmit only a force along itself. Its joints touch no body
+    at rest, and at both joints it turns relative to another body.
     """
     linkage, out = motion.linkage, {}
     held = {body for teeth in linkage.teeth for body in teeth.bodies}
@@ -100,7 +99,7 @@ def _links(motion: Motion, rates: Floats, still: set[str]) -> dict[str, tuple[Jo
 
 
 def _turns_at(motion: Motion, rates: Floats, link: Body, joint: Joint) -> bool:
-    """Whether a link turns relative to another body at a joint; else they move as one."""
+    """Whether a link turns relative to another body at a joint; otherwise both move as one body."""
     linkage = motion.linkage
     spins = [
         _spin(motion, rates, b.name)
@@ -124,9 +123,11 @@ def reached(
     blocked: set[str],
     drivers: tuple[str, str],
 ) -> bool:
-    """Whether the drive reaches any of the bodies without passing through blocked ones.
+    """Whether the drive reaches any of the bodies without passing through blocked bodies.
 
-    beside: the bodies that are connected with each body. blocked: a link, and the bodies at rest.
+    beside: bodies that are connected with each body.
+    blocked: a link, and the bodies at rest.
+    drivers: the two bodies on which the drive acts.
     """
     seen, queue = set(blocked), [*bodies]
     while queue:
@@ -158,5 +159,5 @@ def neighbours(groups: Iterable[Sequence[str]]) -> dict[str, set[str]]:
 
 
 def _bodies(joint: Joint) -> list[str]:
-    """The bodies at a joint, with the one that carries the pin."""
+    """The bodies at a joint, including the body that carries the pin."""
     return [c.body for c in joint.connections] + ([joint.fixed_in] if joint.fixed_in else [])

@@ -1,1 +1,1 @@
-"""Linkages in space: rigid bodies, joints of eight kinds, and the wrench in every joint."""
+"""Linkages in space, with rigid bodies, joints of eight kinds, and the wrench in every joint."""

@@ -20,7 +20,7 @@ from pinbase.arrays import Floats
 class SpacePush:
     """The action of a load on one body over time, world axes.
 
-    at: the body's point at which the force acts, as drawn, m.
+    at: point of the body at which the force acts, as drawn, m.
     force: (T, 3) N. couple: (T, 3) N m.
     """
 
@@ -34,11 +34,11 @@ class SpaceLoad(Unsmooth[Kinks[SpaceMotion]], Protocol):
     """A load on a linkage in space, known at every instant of a motion."""
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
-        """The load's actions on bodies at every instant."""
+        """The actions of the load on bodies at every instant."""
         ...
 
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
-        """Its forces (N) and couples (N m), (T,), along measured coordinates, by their names."""
+        """Pairs (measured coordinate, force (N) or couple (N m) of the load along it, (T,))."""
         ...
 
 
@@ -61,8 +61,8 @@ class SpaceForce:
     at: the point, as drawn, m.
     force, couple: N and N m.
     follows: whether both turn with the body (they are then stated as drawn); otherwise their
-    directions are fixed in the world.
-    times: factor of force and couple; None: 1.
+    directions are fixed in world axes.
+    times: table of the factor of force and couple; None for a factor of 1.
     begin, end: times between which the load acts, s.
     """
 
@@ -76,7 +76,7 @@ class SpaceForce:
     end: float = math.inf
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
-        """The force and couple at every instant; at a switch, those just before it."""
+        """The force and couple at every instant; at a switch, their values just before it."""
         size = factor(motion, self.times, self.begin, self.end)
         force, couple = (size[:, None] * np.array(v) for v in (self.force, self.couple))
         if self.follows:
@@ -85,7 +85,7 @@ class SpaceForce:
         yield SpacePush(self.body, self.at, force, couple)
 
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
-        """Nothing: the force acts on a body."""
+        """An empty iterator: the force acts on a body."""
         return iter(())
 
     @property
@@ -103,7 +103,7 @@ class SpaceForce:
 class SpaceSpring:
     """A spring and damper along a measured coordinate: between two points, along or about a joint.
 
-    It pushes towards a larger value with the force (couple) of its law.
+    A positive force (couple) of its law pushes towards a larger value of the coordinate.
     """
 
     name: str
@@ -111,11 +111,11 @@ class SpaceSpring:
     law: ForceLaw
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
-        """Nothing: the force acts along a coordinate."""
+        """An empty iterator: the force acts along a measured coordinate."""
         return iter(())
 
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
-        """Its force (N) or couple (N m), (T,)."""
+        """The measured coordinate, and the force (N) or couple (N m) along it, (T,)."""
         value, rate, _ = motion.coordinate(self.measured)
         yield self.measured, self.law(value, rate)
 
@@ -126,7 +126,7 @@ class SpaceSpring:
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """No times: a spring acts always."""
+        """An empty tuple: a spring always acts."""
         return ()
 
 

@@ -1,15 +1,16 @@
-"""The elementary conditions of joints in space, with their derivatives, for all at once.
+"""The elementary conditions of joints in space, with their derivatives, for all joints at once.
 
 Three forms serve all joints and measured coordinates:
 
-    points:  e . (P - Q) - x = 0, P of the moving body, Q of the base, e fixed in the base or the
-             world, x the travel that is measured, if any;
-    square:  L n . b = 0, b fixed in the moving body; n fixed in the base or, for an angle theta
-             that is measured, n = a' cos(theta) - a sin(theta) with a, a' fixed in the base;
-    spans:   |P - Q| - x = 0, x the distance that is measured.
+    points:  e . (P - Q) - x = 0, P a point of the moving body, Q of the base, e fixed in the base
+             or the world, x the measured travel, if any;
+    square:  L n . b = 0, b fixed in the moving body; n fixed in the base or, for a measured angle
+             theta, n = a' cos(theta) - a sin(theta) with a, a' fixed in the base;
+    spans:   |P - Q| - x = 0, x the measured distance.
 
-Each has a gradient by displacements (N per N of its multiplier: a force) and by rotations about
-world axes (N m: a couple, about the body's centre of mass) of its two bodies.
+Each condition has gradients by the displacements and rotations of its two bodies. Per unit of the
+condition's multiplier, the gradient by displacements is the force on the body (N per N), and that
+by rotations about world axes is the couple on the body about its centre of mass (N m per N).
 """
 
 from __future__ import annotations
@@ -36,8 +37,11 @@ from pinbase.arrays import Floats, Ints
 
 @dataclass(frozen=True)
 class Rates:
-    """Velocities at T instants: of centres of mass (T, B + 1, 3) m/s, rotations (T, B + 1, 3)
-    rad/s about world axes, and measured coordinates (T, M) rad/s or m/s.
+    """Velocities of B bodies, the ground after them, at T instants.
+
+    velocity: (T, B + 1, 3) velocities of the centres of mass, m/s.
+    spin: (T, B + 1, 3) angular velocities, world axes, rad/s.
+    measured: (T, M) rates of the measured coordinates, rad/s or m/s.
     """
 
     velocity: Floats
@@ -47,10 +51,11 @@ class Rates:
 
 @dataclass(frozen=True)
 class Gradients:
-    """Derivatives of R conditions; T comes last.
+    """Derivatives of R conditions at T instants; T comes last.
 
-    base_force, moving_force: (R, 3, T) by displacements. base_couple, moving_couple: (R, 3, T) by
-    rotations about world axes, m. measured: (R, T) by the measured coordinate, m per rad or m.
+    base_force, moving_force: (R, 3, T) derivatives by displacements of the base and moving body.
+    base_couple, moving_couple: (R, 3, T) derivatives by their rotations about world axes, m.
+    measured: (R, T) derivatives by the measured coordinate, m per rad or m per m.
     """
 
     base_force: Floats
@@ -64,14 +69,18 @@ class Gradients:
 class ConditionRows:
     """The conditions of a linkage as arrays over R rows: points, square, then spans.
 
-    names: of the joint, or measured coordinate, of each row.
-    base, moving: (R,) numbers of the bodies. measured: (R,) of the measured coordinate, or -1.
-    base_point, moving_point: (R, 3) m, from the centres of mass as drawn (points and spans).
-    first, other: (R, 3) as drawn: e of points; b and n, for an angle a', of square.
-    second: (R, 3) a of an angle. turns: (R,) 1 where e turns with the base, 0 where it does not.
+    names: (R,) names of the joints or measured coordinates to which the rows belong.
+    base, moving: (R,) numbers of the two bodies.
+    measured: (R,) number of the measured coordinate, or -1.
+    base_point, moving_point: (R, 3) points Q and P of points and spans, m, from the centres of mass
+    as drawn.
+    first: (R, 3) as drawn: e of points; n, or for an angle a', of square.
+    second: (R, 3) as drawn: a of an angle.
+    other: (R, 3) as drawn: b of square.
+    turns: (R,) 1 where e turns with the base, 0 where it is fixed in the world.
     points, square: number of rows of these forms.
-    length: the length scale, m, which makes cosines comparable to lengths.
-    drawn: (R,) m, distances of spans as drawn.
+    length: length scale L, m, which makes cosines comparable to lengths.
+    drawn: (R,) distances of spans as drawn, m.
     """
 
     names: tuple[str, ...]
@@ -115,22 +124,22 @@ class Quantities:
         has = rows.measured >= 0
         value[has] = measured.T[rows.measured[has]]
         self.value = value
-        # Of points and spans: the arms, and the vector between the points.
-        apart = np.r_[0:n, m : rows.count]
-        base, moving = rows.base[apart], rows.moving[apart]
-        self.base_arm = _turned(R[base], rows.base_point[apart])
-        self.moving_arm = _turned(R[moving], rows.moving_point[apart])
+        # Points and spans: the arms from the centres of mass, and the vector between the points.
+        point_rows = np.r_[0:n, m : rows.count]
+        base, moving = rows.base[point_rows], rows.moving[point_rows]
+        self.base_arm = _turned(R[base], rows.base_point[point_rows])
+        self.moving_arm = _turned(R[moving], rows.moving_point[point_rows])
         place = np.moveaxis(centre, 0, -1)
         self.between = place[moving] + self.moving_arm - place[base] - self.base_arm
         e = _turned(R[rows.base[:n]], rows.first[:n])
         still = rows.turns[:n, None, None]
         self.e = still * e + (1.0 - still) * rows.first[:n, :, None]
-        # Of square: n (as a' cos - a sin), m = dn / d theta reversed, and b.
+        # Square: n = a' cos(theta) - a sin(theta), m = -dn / d theta, and b.
         angle = value[n:m, None]
-        sine = _turned(R[rows.base[n:m]], rows.first[n:m])
-        cosine = _turned(R[rows.base[n:m]], rows.second[n:m])
-        self.n = np.cos(angle) * sine - np.sin(angle) * cosine
-        self.m = np.sin(angle) * sine + np.cos(angle) * cosine
+        first = _turned(R[rows.base[n:m]], rows.first[n:m])
+        second = _turned(R[rows.base[n:m]], rows.second[n:m])
+        self.n = np.cos(angle) * first - np.sin(angle) * second
+        self.m = np.sin(angle) * first + np.cos(angle) * second
         self.b = _turned(R[rows.moving[n:m]], rows.other[n:m])
 
     @cached_property
@@ -160,7 +169,7 @@ class Quantities:
         m = n + rows.square
         L = rows.length
         direction = np.concatenate([self.e, self.along])
-        # The base turns e, too, against the vector between the points.
+        # A rotation of the base also turns e relative to the vector between the points.
         turned = _cross(self.e, self.between[:n]) * rows.turns[:n, None, None]
         on_base = -_cross(self.base_arm, direction)
         on_base[:n] += turned
@@ -188,13 +197,13 @@ class Quantities:
         """Parts of the second derivatives that are quadratic in the rates, (T, R) m/s^2."""
         rows, n = self.rows, self.rows.points
         m = n + rows.square
-        apart = np.r_[0:n, m : rows.count]
+        point_rows = np.r_[0:n, m : rows.count]
         spin, velocity = np.moveaxis(rates.spin, 0, -1), np.moveaxis(rates.velocity, 0, -1)
-        of_base, of_moving = spin[rows.base[apart]], spin[rows.moving[apart]]
+        of_base, of_moving = spin[rows.base[point_rows]], spin[rows.moving[point_rows]]
         base_speed = _cross(of_base, self.base_arm)
         moving_speed = _cross(of_moving, self.moving_arm)
-        speed = velocity[rows.moving[apart]] + moving_speed
-        speed = speed - velocity[rows.base[apart]] - base_speed
+        speed = velocity[rows.moving[point_rows]] + moving_speed
+        speed = speed - velocity[rows.base[point_rows]] - base_speed
         bend = _cross(of_moving, moving_speed) - _cross(of_base, base_speed)
         e_rate = _cross(of_base[:n], self.e) * rows.turns[:n, None, None]
         points = _dot(self.e, bend[:n]) + 2.0 * _dot(e_rate, speed[:n])
@@ -205,7 +214,10 @@ class Quantities:
         return np.concatenate([points, square, spans]).T
 
     def _square_bend(self, rates: Rates, of_base: Floats, of_moving: Floats) -> Floats:
-        """The same of the square rows, (square, T); of_base, of_moving: (square, 3, T) rad/s."""
+        """The quadratic parts of the square rows, (square, T) m/s^2.
+
+        of_base, of_moving: (square, 3, T) angular velocities of the two bodies, rad/s.
+        """
         rows, n = self.rows, self.rows.points
         which = rows.measured[n : n + rows.square]
         rate = (
@@ -284,7 +296,7 @@ class _Row:
 
 
 def axes_of(joint: SpaceJoint) -> dict[Direction, Floats]:
-    """The directions of a joint as drawn, unit vectors (3,): of `directions`, and the second."""
+    """Unit vectors (3,) of a joint as drawn: those of `directions`, and its second axis."""
     frame = directions((0.0, 0.0, 1.0) if joint.axis is None else joint.axis)
     second = frame["w"] if joint.second_axis is None else unit(joint.second_axis)
     return frame | {"second": second}
@@ -293,7 +305,8 @@ def axes_of(joint: SpaceJoint) -> dict[Direction, Floats]:
 def directions(axis: Vector) -> dict[Direction, Floats]:
     """Unit vectors u, v and w, right-handed, with w along an axis, (3,) each.
 
-    u is square to the axis and as near as can be to the world's x axis; of an axis along x, to y.
+    u is perpendicular to the axis and as near as possible to the world's x axis; if the axis is
+    along x, to the y axis.
     """
     w = unit(axis)
     near = np.eye(3)[0] if abs(w[0]) < MAX_COSINE_TO_X else np.eye(3)[1]
@@ -302,7 +315,7 @@ def directions(axis: Vector) -> dict[Direction, Floats]:
     return {"u": u, "v": np.cross(w, u), "w": w}
 
 
-MAX_COSINE_TO_X = math.cos(math.radians(1.0))  # of an axis: nearer to x, y gives the direction u
+MAX_COSINE_TO_X = math.cos(math.radians(1.0))  # an axis closer to x has its u from the y axis
 
 
 def _arm(linkage: SpaceLinkage, body: str, at: Floats) -> Floats:

@@ -1,8 +1,9 @@
 """Newton-Euler equations of every body in space, at all instants at once.
 
-The multipliers f of the equations balance what the bodies require, J^T f = inertia - weight -
-applied; the wrench in every joint is the sum of its own conditions' multipliers. Sets of wrenches
-that are in equilibrium by themselves are shared by rules and by the stiffness of the links.
+The multipliers f of the equations balance the forces that the bodies require, J^T f = inertia -
+weight - applied. The wrench in every joint follows from the multipliers of its own conditions. The
+amounts of self-equilibrated sets of wrenches follow from sharing rules and from the stiffness of
+the links.
 """
 
 from __future__ import annotations
@@ -23,23 +24,24 @@ from loads.space.sharing import RedundantSets, groups, others, redundant_sets, s
 from loads.space.teeth import pitch_points, tooth_forces
 from pinbase.arrays import Complex, Floats
 
-MIN_TURNING_SPEED = 1e-13  # of the fastest coordinate of the course: a joint this slow is at rest
+# Relative to the fastest coordinate of the course: a slower joint counts as at rest.
+MIN_TURNING_SPEED = 1e-13
 
 
 @dataclass(frozen=True)
 class SpaceDynamics:
     """Wrenches in all J joints, with the forces of the drives and the loads.
 
-    reactions: of the moving body of every joint on its base (the pin), world axes, moments about
-    the joint's point.
+    reactions: wrenches of the moving body of every joint on its base (the pin), world axes, moments
+    about the joint's point; after the joints, forces of teeth.
     drive: (T, A) forces of the actuators, N, positive where they increase a length; torques, N m,
     right-handed.
     friction: (T, J) N m, couple of the base on the moving body about the axis.
-    loads: what acts besides gravity.
-    shared: joints whose wrenches follow from sharing rules or stiffness.
-    range: the reactions with other stiffness of links of which none is stated, by what is
-    different; empty where that does not matter.
-    weakest: (T,) smallest over largest pivot of the equations, which is tiny near a dead point.
+    loads: loads other than gravity.
+    shared: names of the joints whose wrenches follow from sharing rules or stiffness.
+    range: reactions for other stiffness of links whose stiffness is not stated, by a text that says
+    what differs; empty where this stiffness has no effect.
+    weakest: (T,) ratio of smallest to largest pivot of the equations, tiny near a dead point.
     """
 
     reactions: Reactions
@@ -58,7 +60,7 @@ class SpaceDynamics:
 
     @property
     def condition(self) -> tuple[float, float]:
-        """Condition number of the equations where they are weakest, and the time of that, s."""
+        """Condition number of the equations where their pivots are weakest, and the time, s."""
         k = int(self.weakest.argmin())
         at = self.motion[k : k + 1]
         J = at.equations.jacobian(at.pose)[0]
@@ -66,8 +68,9 @@ class SpaceDynamics:
 
     @cached_property
     def imbalance(self) -> Floats:
-        """Power of drives, loads and gravity less the rate of the kinetic energy and less what
-        friction takes, (T,) W; zero but for round-off.
+        """Power of drives, loads, gravity and friction less the rate of kinetic energy, (T,) W.
+
+        It is zero except for round-off.
         """
         slices = self.motion.equations.parts(len(self.motion))
         parts = zip(self.motion.parts, slices, strict=True)
@@ -75,7 +78,11 @@ class SpaceDynamics:
         return np.concatenate([self._imbalance(m, part, drives[part]) for m, part in parts])
 
     def _imbalance(self, motion: SpaceMotion, part: slice, drives: Floats) -> Floats:
-        """The same of the instants of a part, which are those of `motion`. drives: (T,) W."""
+        """The imbalance of a batch of instants, (T,) W.
+
+        motion: motion at these instants. part: their place in the whole motion.
+        drives: (T,) power of all actuators, W.
+        """
         linkage, velocities = motion.linkage, motion.velocities
         v, a = velocities.velocity[:, :-1], motion.accelerations.velocity[:, :-1]
         w, rate = velocities.spin[:, :-1], motion.accelerations.spin[:, :-1]
@@ -102,18 +109,21 @@ def space_reactions(
 ) -> SpaceDynamics:
     """Wrenches in a driven motion under gravity, loads and friction.
 
-    case: name, for messages.
+    case: name of the load case, for messages.
     timed: whether the instants follow each other in time.
-    friction: whether joints have theirs.
-    variants: whether with the reactions for other stiffness of links.
+    friction: whether the friction of joints acts.
+    variants: whether to add the reactions for other stiffness of links (`SpaceDynamics.range`).
 
-    Raises: JammingError.
+    Raises: JammingError when friction jams; LinkageError where neither rules nor stiffness
+    determine the wrenches.
     """
 
-    def solved(over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
-        parts = [  # without their own motions, whose matrices would otherwise stay in memory
+    def solved(alternatives: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
+        # Each batch gets the whole motion, so that the matrices of its own are not kept in memory.
+        parts = [
             replace(
-                _Balance(part, tuple(loads), friction).dynamics(case, timed, over), motion=motion
+                _Balance(part, tuple(loads), friction).dynamics(case, timed, alternatives),
+                motion=motion,
             )
             for part in motion.parts
         ]
@@ -122,18 +132,19 @@ def space_reactions(
 
     linkage, stressed = motion.linkage, motion.mobility.shared
     whole = solved(others(linkage, stressed) if variants else {})
-    more = groups(linkage, stressed, whole.range) if whole.range else {}
-    return replace(whole, range=whole.range | solved(more).range) if more else whole
+    grouped = groups(linkage, stressed, whole.range) if whole.range else {}
+    return replace(whole, range=whole.range | solved(grouped).range) if grouped else whole
 
 
 @dataclass(frozen=True)
 class _Source:
     """A force (couple) in proportion to the magnitude of a contact force.
 
-    rubs: whether it is the friction of a joint; otherwise it is the force that teeth push apart by.
+    rubs: whether it is the friction of a joint; otherwise it is the force that pushes teeth apart.
     which: number of the joint or of the teeth.
-    share: (T,) per newton of the contact force; m for a joint.
-    required: (T, n) generalised forces that bodies require in addition per newton (newton metre).
+    share: (T,) force (couple) per newton of the contact force, with its sign; m for a joint.
+    required: (T, n) generalised forces that bodies require in addition, per newton (newton metre)
+    of the force (couple).
     """
 
     name: str
@@ -152,15 +163,18 @@ class _Balance:
         self.sources = [*self._teeth(), *(self._rubbing() if friction else ())]
         self.shared = motion.mobility.shared
 
-    def dynamics(self, case: str, timed: bool, over: Mapping[str, SpaceLinkage]) -> SpaceDynamics:
-        """Wrenches and drive forces; arguments as of `space_reactions`.
+    def dynamics(
+        self, case: str, timed: bool, alternatives: Mapping[str, SpaceLinkage]
+    ) -> SpaceDynamics:
+        """Wrenches and drive forces of the batch.
 
-        over: linkages with other stiffness of links, by what is different.
+        case, timed: as for `space_reactions`.
+        alternatives: linkages with other stiffness of links, by a text that says what differs.
         """
         required = self._required()
         f = self.motion.force_factors.solve_transposed(required)
         reactions, drive, friction = self._solved(self.linkage, f, case, timed)
-        every = over if self.motion.force_factors.spare else {}
+        every = alternatives if self.motion.force_factors.spare else {}
         range_ = {text: self._solved(x, f, case, timed)[0] for text, x in every.items()}
         return SpaceDynamics(
             reactions,
@@ -193,19 +207,19 @@ class _Balance:
         return reactions, drive, friction
 
     def _shared(self, linkage: SpaceLinkage, f: Floats) -> Floats:
-        """Multipliers with the sets in equilibrium by themselves that rules and links demand."""
+        """Multipliers plus self-equilibrated sets in the amounts that rules and links demand."""
         if not self.motion.force_factors.spare:
             return f
         return shared(self.equations, linkage, self.motion.pose, f, self._sets)
 
     @cached_property
     def _sets(self) -> RedundantSets:
-        """The sets in equilibrium by themselves, for all stiffness and all sources of friction."""
+        """The self-equilibrated sets, which do not depend on the stiffness and the loads."""
         motion = self.motion
         return redundant_sets(self.equations, motion.pose, motion.force_factors.null)
 
     def _required(self) -> Floats:
-        """Generalised forces (T, n), scaled, that the bodies require beyond weight and loads."""
+        """Generalised forces (T, n), scaled, that the bodies require: inertia - weight - loads."""
         motion = self.motion
         a, rate = motion.accelerations.velocity[:, :-1], motion.accelerations.spin[:, :-1]
         spin, inertia = motion.velocities.spin[:, :-1], motion.inertias
@@ -228,7 +242,7 @@ class _Balance:
         )
 
     def _rubbing(self) -> Iterator[_Source]:
-        """The friction of the revolute joints that have some."""
+        """The friction couple of each revolute joint that has friction."""
         motion, linkage = self.motion, self.linkage
         for k, joint in enumerate(linkage.joints):
             if not joint.friction:
@@ -245,7 +259,7 @@ class _Balance:
             yield _Source(f"joint {joint.name}", True, k, joint.friction * against, required)
 
     def _teeth(self) -> Iterator[_Source]:
-        """The force by which each pair of teeth pushes apart."""
+        """The force that pushes each pair of teeth apart."""
         motion, linkage, pose = self.motion, self.linkage, self.motion.pose
         points = pitch_points(linkage, pose)
         for g, ((_, ratio, teeth), (at, _, normal)) in enumerate(
@@ -262,11 +276,11 @@ class _Balance:
             yield _Source(f"teeth {ratio.name}", False, g, share, required)
 
     def _with_contacts(self, linkage: SpaceLinkage, f: Floats) -> tuple[Floats, list[Floats]]:
-        """Multipliers with the forces of all sources, and their amounts, (T,) each.
+        """Multipliers that include all sources, and the force (couple) of each source, (T,) each.
 
-        f: (T, rows) without them.
+        f: (T, rows) multipliers without the sources.
 
-        Raises: JammingError.
+        Raises: JammingError when friction jams.
         """
         motion, sources = self.motion, self.sources
         unit = [
@@ -295,8 +309,9 @@ class _Balance:
         return u, v, w
 
     def _contacts(self, f: Floats) -> Complex:
-        """Contact forces of the sources, (T, sources) N, complex: across the axis of a joint, along
-        the pitch circle of teeth.
+        """Contact forces at the sources, (T, sources) N, complex.
+
+        They are the forces across the axis of a joint, and along the pitch circles of teeth.
         """
         forces, _ = self.equations.wrenches(self.motion.pose, f)
         ratios = self.equations.ratio_forces(f)

@@ -1,14 +1,14 @@
 """The equations of a linkage in space, assembled from its data, for all instants at once.
 
-Coordinates q (T, n), all zero as drawn: of every body the displacement of its centre of mass (m)
-and the change of its four Euler parameters, then the change of every measured coordinate (rad, m).
-With so many coordinates every equation is short, its derivatives are explicit, and its multiplier
-is a force or couple in a joint (Haug, Computer Aided Kinematics and Dynamics, 1989, ch. 9 and 11).
-Measured coordinates make angles continuous over any number of turns, and the equations of drives
-and gears linear.
+The coordinates q (T, n), all zero as drawn, are for every body the displacement of its centre of
+mass (m) and the change of its four Euler parameters, then the change of every measured coordinate
+(rad, m). With so many coordinates every equation is short, its derivatives are explicit, and its
+multiplier is a force or couple in a joint (Haug, Computer Aided Kinematics and Dynamics, 1989, ch.
+9 and 11). Measured coordinates make angles continuous over any number of turns, and make the
+equations of drives and gears linear.
 
-A rotation depends on the direction of its Euler parameters only, so that their length is one more
-equation. With d pi a small rotation about world axes, d pi = 2 E dp / |p|^2.
+A rotation depends only on the direction of its four Euler parameters p, so that |p| = 1 is one more
+equation for each body. A small rotation d pi about world axes is d pi = 2 E dp / |p|^2.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from loads.space.pose import BODY_COORDINATES, SpacePose, rotations, turning
 from loads.space.teeth import tooth_forces, write_tooth_rows
 from pinbase.arrays import Floats
 
-MATRIX_BATCH_ENTRIES = 2**22  # in the matrices of a batch of instants: 32 MB
-MIN_BATCH = 64  # instants, over which the steps of an elimination are shared
+MATRIX_BATCH_ENTRIES = 2**22  # entries of the matrices of a batch of instants: 32 MB
+MIN_BATCH = 64  # least number of instants in a batch; they share the overhead of an elimination
 
 
 class SpaceEquations:
-    """The equations of one linkage: joints, measured coordinates, lengths of Euler parameters,
-    ratios of gears, then drives.
+    """The equations of one linkage in space.
 
-    All are in m and all columns are scaled to lengths, so that the Jacobian has no dimension. The
-    multiplier of a drive is its force, or its torque over the length scale, N.
+    They are those of joints, measured coordinates, lengths of Euler parameters, ratios of gears,
+    then drives. All are in m and all columns are scaled to lengths, so that the Jacobian is
+    dimensionless. The multiplier of a drive is its force, or its torque over the length scale, N.
     """
 
     def __init__(self, linkage: SpaceLinkage) -> None:
@@ -54,7 +54,7 @@ class SpaceEquations:
 
     @property
     def guides(self) -> int:
-        """Number of equations without the drives'."""
+        """Number of equations without those of the drives."""
         return self.conditions.count + self.bodies + len(self.linkage.ratios)
 
     @property
@@ -68,7 +68,7 @@ class SpaceEquations:
         return slice(self.guides - len(self.linkage.ratios), self.guides)
 
     def ratio_forces(self, f: Floats) -> Floats:
-        """The multipliers (T, ratios) of the ratios, N, of all multipliers (T, rows)."""
+        """The multipliers (T, ratios) of the ratios, N, among all multipliers f (T, rows)."""
         return f[:, self._ratio_rows]
 
     def parts(self, count: int) -> list[slice]:
@@ -106,7 +106,7 @@ class SpaceEquations:
         return out
 
     def column(self, name: str) -> int:
-        """Number of the coordinate of a measured coordinate."""
+        """Column of a measured coordinate in q."""
         return BODY_COORDINATES * self.bodies + self._at[name]
 
     # --- kinematics -------------------------------------------------------------------------------
@@ -140,7 +140,7 @@ class SpaceEquations:
     def turned(self, pose: SpacePose, parameters: Floats) -> Floats:
         """Angular rates (T, B, 3) about world axes from rates (T, B, 4) of Euler parameters.
 
-        Second rates give angular accelerations, since E p' vanishes along with p' p.
+        Second rates give angular accelerations likewise, because E' p' and p . p' vanish.
         """
         return np.asarray((turning(pose.turn[:, :-1]) @ parameters[..., None])[..., 0])
 
@@ -200,13 +200,13 @@ class SpaceEquations:
     def _elimination(self) -> tuple[Step, ...]:
         """The steps of elimination for the Jacobian's pattern of nonzeros.
 
-        It is that of arbitrary positions, in which no entry vanishes by chance.
+        The pattern is taken at random positions, where no entry vanishes by chance.
         """
         q = np.random.default_rng(0).standard_normal((3, self.columns))
         return elimination((self.jacobian(self.pose(q)) != 0.0).any(axis=0))
 
     def bend_side(self, pose: SpacePose, v: Floats) -> Floats:
-        """Right-hand side (T, rows) from the accelerations that are quadratic in rates v (T, n).
+        """Right-hand side (T, rows) of the accelerations that are quadratic in rates v (T, n).
 
         It is zero in the rows of ratios and drives, which are linear in the coordinates.
         """
@@ -222,8 +222,9 @@ class SpaceEquations:
     # --- forces -----------------------------------------------------------------------------------
 
     def generalised(self, pose: SpacePose, forces: Floats, couples: Floats) -> Floats:
-        """Generalised forces (T, n), scaled, of forces (T, B, 3) N at the centres of mass and
-        couples (T, B, 3) N m.
+        """Generalised forces (T, n), scaled to N, of forces and couples on the bodies.
+
+        forces: (T, B, 3) N, at the centres of mass. couples: (T, B, 3) N m.
         """
         on_parameters = (np.swapaxes(turning(pose.turn[:, :-1]), -1, -2) @ couples[..., None])[
             ..., 0
@@ -252,13 +253,12 @@ class SpaceEquations:
         return not isinstance(self.linkage.measured[self._at[name]], JointAngle | BodyAngle)
 
     def force_factors(self, pose: SpacePose, weights: Floats) -> Factors:
-        """Orthogonal factors of the Jacobian whose multipliers are the forces in joints and teeth,
-        and of sets of actuators.
+        """Orthogonal factors of the Jacobian with forces of joints, teeth and sets as multipliers.
 
         Where teeth mesh, the row of a ratio is the speed at which they slide along the pitch
-        circles. With closed joints that says the same as the ratio of the angles, but its
+        circles. If the joints are closed, this is equivalent to the ratio of the angles, but its
         multiplier is a force at the pitch point, which the bearings carry. By virtual work the row
-        of a set is the sum of its actuators' rows, weighted by their forces.
+        of a set of actuators is the sum of their rows, each weighted by the actuator's force.
 
         weights: (T, A, D) force of each actuator, N or N m, per unit of its set's multiplier.
         """
@@ -275,7 +275,7 @@ class SpaceEquations:
 
     @cached_property
     def _force_elimination(self) -> tuple[Step, ...]:
-        """The steps of elimination for these rows."""
+        """The steps of elimination for the pattern of `_force_rows`."""
         pose = self.pose(np.random.default_rng(0).standard_normal((3, self.columns)))
         members = [[name in names for names, _ in self.sets] for name in self.actuators]
         shape = len(self.actuators), len(self.sets)
@@ -283,7 +283,7 @@ class SpaceEquations:
         return elimination((self._force_rows(pose, every) != 0.0).any(axis=0))
 
     def transmitted(self, pose: SpacePose, f: Floats) -> Floats:
-        """Wrenches (T, J + G, 6) of joints, then of teeth; N and N m, of multipliers (T, rows)."""
+        """Wrenches (T, J + G, 6) N and N m of joints, then teeth, from multipliers f (T, rows)."""
         joints = np.concatenate(self.wrenches(pose, f), axis=-1)
         teeth = tooth_forces(self.linkage, pose, self.ratio_forces(f))
         return np.concatenate([joints, np.concatenate([teeth, 0.0 * teeth], axis=-1)], axis=1)
@@ -312,7 +312,7 @@ class SpaceEquations:
 
     @property
     def kutzbach(self) -> int:
-        """Degrees of freedom by counting: 6 for each body less the conditions of all joints."""
+        """Degrees of freedom by counting: 6 per body, less the conditions of joints and ratios."""
         conditions = sum(KINDS[j.kind].count for j in self.linkage.joints)
         return 6 * self.bodies - conditions - len(self.linkage.ratios)
 
@@ -322,8 +322,8 @@ class SpaceEquations:
         return tuple(not isinstance(d, JointAngle | BodyAngle) for d in self.linkage.drives)
 
     @property
-    def besides_lengths(self) -> tuple[tuple[str, str], ...]:
-        """The needs of redundant links to close, besides their lengths, and what describes each."""
+    def closing_conditions(self) -> tuple[tuple[str, str], ...]:
+        """Pairs (condition, input to check): what redundant links need to close besides lengths."""
         axes = ("the directions of its axes", "their axes")
         return axes, *CLOSING_GEARS * bool(self.linkage.ratios)
 
@@ -332,8 +332,8 @@ class SpaceEquations:
     ) -> tuple[str, ...]:
         """Names of the bodies that move in any of k motions.
 
-        pose: at a single instant. rates: (k, n) of the coordinates.
-        least: speed of a body that moves, relative to the fastest.
+        pose: pose of a single instant. rates: (k, n) rates of the coordinates.
+        least: speed above which a body moves, relative to the fastest body.
         """
         if not len(rates):
             return ()
@@ -345,7 +345,7 @@ class SpaceEquations:
         return tuple(b.name for b, v in named if v > least * largest.max())
 
     def advice(self, pose: SpacePose, rates: Floats) -> str:
-        """Advice on stopping k motions (k, n) with the drives locked: on links that only spin."""
+        """Advice on how to stop k motions (k, n) with locked drives, if all are spins of links."""
         spinning = list[str]()
         for motion in rates:
             each = self.rates(pose, motion[None])
@@ -369,7 +369,7 @@ class SpaceEquations:
     def stressed(self, pose: SpacePose, multipliers: Floats) -> tuple[str, ...]:
         """Names of the joints and gears that carry any of k self-equilibrated sets of forces.
 
-        pose: at a single instant. multipliers: (rows, k).
+        pose: pose of a single instant. multipliers: (rows, k), one column per set.
         """
         if not multipliers.size:
             return ()
@@ -386,13 +386,14 @@ class SpaceEquations:
     def apart(self, q: Floats, drives: Floats) -> tuple[tuple[str, ...], float]:
         """Names of the joints that do not meet at coordinates q (n,), and the largest gap, m.
 
-        A joint that is only askew is named, too; its gap is the angle times the length scale.
-        drives: (D,) values.
+        A joint whose axes are only misaligned is named, too; its gap is the angle times the length
+        scale.
+        drives: (D,) values of the drives, m or rad.
         """
         gap = np.abs(self.residual(q[None], self.pose(q[None]), drives[None])[0])
         joints = {joint.name for joint in self.linkage.joints}
         of_joints = [k for k, name in enumerate(self.conditions.names) if name in joints]
-        gap = gap[of_joints]  # an angle or length that is measured follows
+        gap = gap[of_joints]  # without rows of measured coordinates, which follow the position
         open_rows = np.flatnonzero(gap > 0.1 * gap.max(initial=0.0))
         names = dict.fromkeys(self.conditions.names[of_joints[k]] for k in open_rows)
         return tuple(names), float(gap.max(initial=0.0))

@@ -1,11 +1,12 @@
-"""Gears and racks in space: the ratio of two turns, and the force where the teeth meet.
+"""Gears and racks in space, with the ratio of two turns, and the force where the teeth meet.
 
-Gears of parallel axes roll on each other along pitch circles, those of crossing axes on pitch cones
-whose tips are where the axes meet. Along a unit force round the circles (t) the teeth push apart
-across the surfaces on which they roll (n) by tan(pressure angle) / cos(helix angle), and oblique
-ones along the line at which these touch (l) by tan(helix angle) (Shigley, Mechanical Engineering
-Design, ch. 13; of bevel gears both parts appear as radial and axial forces of each gear). Neither
-does work, as the gears do not slide in these directions.
+Gears with parallel axes roll on each other along pitch circles. Gears with intersecting axes roll
+on pitch cones, whose apexes are at the intersection. Per unit force tangential to the circles (t),
+the teeth push apart normal to the pitch surfaces (n) with tan(pressure angle) / cos(helix angle).
+Helical teeth also push along the line at which the pitch surfaces touch (l) with tan(helix angle)
+(Shigley, Mechanical Engineering Design, ch. 13; in bevel gears both parts appear as radial and
+axial forces of each gear). Neither part does work, because the gears do not slide in these
+directions.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from loads.space.linkage import BodyAngle, JointTravel, Measured, Ratio, ToothCo
 from pinbase.arrays import Floats
 from pinbase.errors import NumberInSI
 
-PARALLEL = 1e-6  # sine of the angle between axes that are parallel
-MEETING = 1e-4  # distance of axes that meet, over that of the centres
+PARALLEL = 1e-6  # sine of the angle between axes, up to which they count as parallel
+MEETING = 1e-4  # distance of two axes over that of the centres, up to which they intersect
 
 Mesh = tuple[tuple[Measured, ...], Ratio]
 
@@ -30,7 +31,9 @@ Mesh = tuple[tuple[Measured, ...], Ratio]
 class GearWheel:
     """A gear on its carrier.
 
-    body: with the teeth. centre: a point of its axis as drawn, m. axis: unit vector as drawn, (3,).
+    body: name of the body with the teeth.
+    centre: point of the axis as drawn, m.
+    axis: unit vector (3,) as drawn.
     """
 
     body: str
@@ -42,7 +45,8 @@ class GearWheel:
 class Flanks:
     """The flanks of teeth.
 
-    pressure_angle: across the teeth, rad. helix_angle: of the first body, right-handed, rad.
+    pressure_angle: normal pressure angle, rad.
+    helix_angle: helix angle of the first body, positive if right-handed, rad.
     """
 
     pressure_angle: float
@@ -51,8 +55,10 @@ class Flanks:
 
 @dataclass(frozen=True)
 class _Place:
-    """The place where teeth meet: the pitch point, m, and the directions t, l and n, as drawn, (3,)
-    each.
+    """The place where teeth meet, as drawn.
+
+    at: pitch point, (3,) m.
+    along, lengthwise, normal: unit vectors t, l and n, (3,) each.
     """
 
     at: Floats
@@ -70,15 +76,16 @@ def gears_in_space(
     flanks: Flanks,
     at: Vector | None = None,
 ) -> Mesh:
-    """The teeth of two gears on a carrier, and the angles of which they keep the ratio.
+    """The angles of two gears on a carrier, and their ratio with the teeth that keep it.
 
     sizes: pitch radii in any unit, or numbers of teeth; negative for a ring gear.
-    radius: of the first gear's pitch circle, m; None: from where the axes are and, of crossing
-    ones, from `at`.
-    at: a point where teeth meet, m: of parallel axes its place along them counts, of crossing ones
-    its distance from where they meet. None: of parallel axes midway between the centres.
+    radius: pitch radius of the first gear, m, used for intersecting axes only; None if it follows
+    from `at`.
+    at: a point where teeth meet, m. For parallel axes its position along the axes counts, for
+    intersecting axes its distance from the intersection. None for parallel axes means midway
+    between the centres.
 
-    Raises: LinkageError.
+    Raises: LinkageError where the pitch circles or cones are impossible or not determined.
     """
     place = (
         _on_cones(name, wheels, sizes, radius, at)
@@ -110,14 +117,16 @@ def rack_in_space(
     flanks: Flanks,
     at: Vector | None = None,
 ) -> Mesh:
-    """The teeth of a pinion and a rack, and the coordinates of which they keep the ratio.
+    """The coordinates of a pinion and a rack, and their ratio with the teeth that keep it.
 
-    rack: its body, the joint along which it slides, and its direction of positive travel, (3,).
-    radius: of the pitch circle, m; negative where the rack is on the right, as seen with the axis
-    towards the viewer, looking in the direction of the joint.
-    at: a point where teeth meet, of which the place along the axis counts, m. None: the centre.
+    rack: body of the rack, the joint along which it slides, and the direction (3,) in which it
+    moves for positive travel.
+    radius: pitch radius, m; negative where the rack is on the right, as seen with the axis towards
+    the viewer, looking in the direction of the joint.
+    at: a point where teeth meet, m, of which the position along the axis counts; None for the
+    centre.
 
-    Raises: LinkageError.
+    Raises: LinkageError where rack and axis are not perpendicular.
     """
     body, joint, travel = rack
     axis = pinion.axis
@@ -130,7 +139,7 @@ def rack_in_space(
         )
     centre = np.array(pinion.centre)
     along_axis = 0.0 if at is None else float(axis @ (np.array(at) - centre))
-    # The direction of the joint is that of the moving body; travel is that of the rack.
+    # The joint's direction refers to its moving body; `travel` refers to the rack.
     normal = math.copysign(1.0, radius) * np.cross(axis, travel)
     middle = centre + along_axis * axis + abs(radius) * normal
     place = _Place(middle, np.cross(axis, normal), axis, normal)
@@ -146,7 +155,7 @@ def rack_in_space(
 
 
 def axes_distance(first: GearWheel, second: GearWheel) -> float | None:
-    """The distance of two parallel axes, m; None where they are not parallel."""
+    """The distance between two parallel axes, m; None where they are not parallel."""
     if _cross(first, second):
         return None
     apart = np.subtract(second.centre, first.centre)
@@ -161,7 +170,10 @@ def _cross(first: GearWheel, second: GearWheel) -> bool:
 def _on_cylinders(
     name: str, wheels: tuple[GearWheel, GearWheel], sizes: tuple[float, float], at: Vector | None
 ) -> _Place:
-    """The place of the teeth of parallel axes, at which the pitch circles touch."""
+    """The place of the teeth for parallel axes, at which the pitch circles touch.
+
+    Raises: LinkageError where pitch circles of this ratio cannot touch.
+    """
     axis = wheels[0].axis
     centres = [np.array(wheel.centre) for wheel in wheels]
     along = [float(axis @ centre) for centre in centres]
@@ -179,7 +191,8 @@ def _on_cylinders(
         )
     normal = line / math.copysign(distance, total)
     point = first + sizes[0] / total * line
-    # Of a ring the normal points to its axis, and its teeth seen from there have the other hand.
+    # The normal of a ring gear points to its axis, and its teeth seen from there have the opposite
+    # hand.
     lengthwise = axis if sizes[0] > 0.0 else -axis
     return _Place(point, np.cross(axis, normal), lengthwise, normal)
 
@@ -191,7 +204,11 @@ def _on_cones(
     radius: float | None,
     at: Vector | None,
 ) -> _Place:
-    """The place of the teeth of crossing axes, on the line at which the pitch cones touch."""
+    """The place of the teeth for intersecting axes, on the line at which the pitch cones touch.
+
+    Raises: LinkageError for a ring gear, for axes that do not intersect, and where the side or the
+    size of the cones is not determined.
+    """
     key = ("gear", name)
     tip = _meeting(name, wheels)
     if min(sizes) < 0.0:
@@ -233,7 +250,7 @@ def _centres(wheels: tuple[GearWheel, GearWheel]) -> tuple[Vector, Vector]:
 
 
 def _meeting(name: str, wheels: tuple[GearWheel, GearWheel]) -> Floats:
-    """The point at which two axes meet, (3,) m."""
+    """The point at which two axes intersect, (3,) m. Raises: LinkageError where they do not."""
     a, b = (wheel.axis for wheel in wheels)
     first, second = (np.array(wheel.centre) for wheel in wheels)
     across = np.cross(a, b)

@@ -1,7 +1,8 @@
-"""Bodies of a linkage in space whose ground moves: an aircraft that turns, a vehicle, a ship.
+"""Bodies of a linkage in space whose ground moves, as an aircraft that turns, a vehicle or a ship.
 
-The linkage is solved in axes that move with its ground, in which the ground's motion is a load: the
-inertia that an observer on the ground does not see, and the change of gravity as the axes turn.
+The linkage is solved in axes that move with its ground. In these axes the ground's motion is a
+load: the inertia forces due to the motion of the ground, and the change of gravity as the axes
+turn.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class GroundState:
-    """Motion of the ground at T instants, in its axes; rates are those seen from outside.
+    """Motion of the ground at T instants, as seen from outside, in the ground's axes.
 
-    velocity, acceleration: of the origin, (T, 3) m/s and m/s^2.
+    velocity, acceleration: (T, 3) of the ground's origin, m/s and m/s^2.
     spin, spin_rate: (T, 3) rad/s and rad/s^2.
-    turn: (T, 3, 3), from components along its axes to those along the axes in which the linkage's
-    gravity is stated.
+    turn: (T, 3, 3) rotations that transform components in the ground's axes to the fixed axes in
+    which the linkage's gravity is stated.
     """
 
     velocity: Floats
@@ -35,8 +36,10 @@ class GroundState:
     turn: Floats
 
     def acceleration_at(self, place: Floats, velocity: Floats) -> Floats:
-        """Acceleration (T, B, 3), beyond what an observer on the ground sees, of points at `place`
-        (T, B, 3) m that move at `velocity` (T, B, 3) m/s on the ground.
+        """Acceleration (T, B, 3) m/s^2 of points due to the motion of the ground.
+
+        It comes on top of the acceleration relative to the ground.
+        place, velocity: (T, B, 3) positions (m) and velocities (m/s) relative to the ground.
         """
         spin = self.spin[:, None]
         carried = np.cross(self.spin_rate[:, None], place) + np.cross(spin, np.cross(spin, place))
@@ -50,10 +53,11 @@ Ground = Callable[[Floats], GroundState]  # at times (T,) s
 class TurningGround:
     """A ground that turns about an axis fixed in it, with constant rates of speed and turn.
 
-    velocity: of the origin at time 0, in the ground's axes, m/s.
-    speed_up: constant rate of these components, m/s^2.
-    axis: direction, fixed in the ground.
-    rate, rate_change: of turn about it at time 0, rad/s, and its constant change, rad/s^2.
+    velocity: velocity of the origin at time 0, in the ground's axes, m/s.
+    speed_up: constant rate of the velocity's components in these axes, m/s^2.
+    axis: direction of the axis, fixed in the ground.
+    rate, rate_change: angular velocity about the axis at time 0, rad/s, and its constant rate,
+    rad/s^2.
     straight: whether the path of the origin is straight at every instant, so that the velocity
     keeps its direction while the axes turn; otherwise the velocity turns with the ground.
     """
@@ -93,8 +97,9 @@ def rotation_about(axis: Floats, angle: Floats) -> Floats:
 class BodyMomenta:
     """Motion and momenta of B bodies as seen from outside, (T, B, 3), in the ground's axes.
 
-    centre: centres of mass from the ground's origin, m. velocity, acceleration: their rates.
-    coriolis: part of the acceleration by which points that move on a turning ground are deflected.
+    centre: centres of mass from the ground's origin, m.
+    velocity, acceleration: m/s and m/s^2, of the centres of mass.
+    coriolis: Coriolis acceleration, part of `acceleration`, m/s^2.
     spin, spin_rate: rad/s and rad/s^2.
     momentum, momentum_rate: kg m/s and N.
     angular_momentum, angular_momentum_rate: about the centres of mass, kg m^2/s and N m.
@@ -148,7 +153,10 @@ class GroundInertia:
     ground: Ground
 
     def felt(self, motion: SpaceMotion, place: Floats, velocity: Floats) -> Floats:
-        """Change of free fall (T, B, 3) m/s^2 at points; `place`, `velocity` as of GroundState."""
+        """Change of the acceleration of free fall at points, (T, B, 3) m/s^2.
+
+        place, velocity: as for `GroundState.acceleration_at`.
+        """
         state = self.ground(motion.times)
         drawn = np.array(motion.linkage.gravity)
         tilt = np.swapaxes(state.turn, -1, -2) @ drawn - drawn
@@ -163,15 +171,15 @@ class GroundInertia:
             yield SpacePush(body.name, body.centre, force[:, k], couple[:, k])
 
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
-        """Nothing: the ground's motion acts on bodies."""
+        """An empty iterator: the ground's motion acts on bodies."""
         return iter(())
 
     @property
     def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
-        """None: the ground moves smoothly."""
+        """An empty tuple: the ground moves smoothly."""
         return ()
 
     @property
     def switches(self) -> tuple[float, ...]:
-        """None: the ground moves throughout."""
+        """An empty tuple: the ground moves all the time."""
         return ()

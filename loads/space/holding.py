@@ -1,4 +1,4 @@
-"""What holds a linkage in space at rest where its drives do not: locks, and stops of joints."""
+"""Locks and stops that hold a linkage in space at rest in place of its drives."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from loads.space.motion import SpaceMotion, space_move
 
 
 def held(motion: SpaceMotion, hold: Sequence[str]) -> SpaceMotion:
-    """A position at rest, in which other measured coordinates stand for the drives.
+    """A position at rest, in which other measured coordinates take the place of the drives.
 
-    motion: of one instant.
-    hold: names of measured coordinates.
+    motion: motion of a single instant.
+    hold: names of the measured coordinates that hold the linkage.
 
-    Raises: LinkageError where these cannot hold the linkage, or are too many.
+    Raises: LinkageError where these cannot hold the linkage, or their number is wrong.
     """
     equations = _held(motion.linkage, hold, motion.mobility.degrees)
     drives = equations.linkage.driven
@@ -41,9 +41,11 @@ def held(motion: SpaceMotion, hold: Sequence[str]) -> SpaceMotion:
 
 
 def held_as_drawn(linkage: SpaceLinkage, hold: Sequence[str]) -> SpaceMotion:
-    """A linkage without drives at rest as drawn.
+    """The motion, at rest as drawn, of a linkage without drives.
 
-    hold, raises: as of `held`.
+    hold: names of the measured coordinates that hold the linkage.
+
+    Raises: LinkageError where these cannot hold the linkage, or their number is wrong.
     """
     equations = _held(linkage, hold, freedom_of(SpaceEquations(linkage)).degrees)
     if (freedom := freedom_of(equations)).free:

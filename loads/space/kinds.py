@@ -1,9 +1,9 @@
-"""The kinds of joints in space: which motions each prevents.
+"""The kinds of joints in space, and the motions that each prevents.
 
-Every kind is a choice from three elementary conditions between a base and a moving body (Haug,
-Computer Aided Kinematics and Dynamics, 1989, ch. 9): their points coincide; the point of the moving
-body does not leave the base's along a direction of the base; a direction of the one stays at a
-right angle to a direction of the other. A new kind is one more row of KINDS.
+Every kind combines three elementary conditions between a base and a moving body (Haug, Computer
+Aided Kinematics and Dynamics, 1989, ch. 9). Their points coincide; or the two points keep no
+distance along a direction of the base; or a direction of one body stays perpendicular to a
+direction of the other. A new kind is one more row of KINDS.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ Kind = Literal[
     "point-on-line",
 ]
 
-# Directions of a joint: its axis w, and u and v, which make a right-handed frame u, v, w with it.
+# Directions of a joint: its axis w; u and v, which form a right-handed frame u, v, w with it; and
+# the second axis of a universal joint.
 Direction = Literal["u", "v", "w", "second"]
 
 
@@ -31,8 +32,8 @@ class Conditions:
     """The conditions of one kind of joint.
 
     meets: whether the two points coincide.
-    along: directions of the base along which the points keep no distance, unless `meets`.
-    square: pairs of directions, of the base and of the moving body, that stay at a right angle.
+    along: directions of the base along which the points have no distance, unless `meets`.
+    square: pairs of a direction of the base and one of the moving body that stay perpendicular.
     axes: number of directions that the joint needs: 0, 1 or 2.
     angle, travel: whether the joint has an angle about, or a travel along, its axis.
     """

@@ -1,4 +1,4 @@
-"""A linkage in space as data: rigid bodies, joints between pairs of them, and what drives it."""
+"""A linkage in space as data, with rigid bodies, joints between pairs of them, and coordinates."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from pinbase.arrays import Floats
 Vector = tuple[float, float, float]
 Inertia = tuple[Vector, Vector, Vector]
 
-MIN_DIRECTION = 1e-9  # length of a vector: below it there is no direction
-MAX_COSINE = 1.0 - 1e-9  # of an angle between two axes that must not be parallel
-RIGHT_ANGLE_TOLERANCE = 1e-6  # cosine of the angle between the two axes of a universal joint
-INERTIA_ROUND_OFF = 1e-9  # of the largest moment of inertia
+MIN_DIRECTION = 1e-9  # length of a vector, up to which it defines no direction
+MAX_COSINE = 1.0 - 1e-9  # cosine of the angle between two axes, above which they are parallel
+RIGHT_ANGLE_TOLERANCE = 1e-6  # largest cosine of the angle between the axes of a universal joint
+INERTIA_ROUND_OFF = 1e-9  # relative to the largest element of an inertia tensor
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class RigidBody:
 
     mass: kg.
     centre: centre of mass in world axes, m.
-    inertia: tensor about the centre of mass along world axes, as drawn, kg m^2.
+    inertia: inertia tensor about the centre of mass, along world axes as drawn, kg m^2.
     """
 
     name: str
@@ -42,13 +42,14 @@ class RigidBody:
 class SpaceJoint:
     """A joint between two bodies, and the name of the wrench that it transmits.
 
-    base, moving: bodies, or GROUND.
-    at: its point as drawn, m. Its moment is stated about the point of the moving body, which
-    travels with it along a cylindrical, prismatic or planar joint or a line.
-    axis: direction as drawn. Of a revolute, cylindrical or prismatic joint its axis; of a
-    universal joint the axis fixed in the base; of a planar joint the normal; of a point on a line
-    the line, fixed in the base.
-    second_axis: of a universal joint, the axis fixed in the moving body, square to `axis`.
+    base, moving: names of the two bodies, or GROUND.
+    at: point of the joint as drawn, m. The joint's moment is stated about the point of the moving
+    body, which travels with this body along a cylindrical, prismatic or planar joint or a line.
+    axis: direction as drawn: the axis of a revolute, cylindrical or prismatic joint; the axis of a
+    universal joint that is fixed in the base; the normal of a planar joint; or the line, fixed in
+    the base, of a point on a line.
+    second_axis: axis of a universal joint that is fixed in the moving body, perpendicular to
+    `axis`.
     friction: radius of the friction circle of a revolute joint, m.
     """
 
@@ -66,7 +67,7 @@ class SpaceJoint:
 class JointAngle:
     """The angle of a revolute or cylindrical joint about its axis, right-handed.
 
-    drawn: its value as drawn, rad.
+    drawn: angle as drawn, rad.
     """
 
     name: str
@@ -78,7 +79,7 @@ class JointAngle:
 class JointTravel:
     """The travel of a prismatic or cylindrical joint along its axis.
 
-    drawn: its value as drawn, m.
+    drawn: travel as drawn, m.
     """
 
     name: str
@@ -106,13 +107,13 @@ class PointDistance:
 
 @dataclass(frozen=True)
 class BodyAngle:
-    """The angle of a body against another about an axis, which need share no joint.
+    """The angle of a body relative to another about an axis; the bodies need not share a joint.
 
-    The axis stays parallel to itself in both, as in a planar linkage: a crank against the ground
-    through a chain of links, or a gear against its carrier.
+    The axis keeps its direction in both bodies, as in a planar linkage. Examples are a crank
+    relative to the ground through a chain of links, or a gear relative to its carrier.
 
     axis: direction as drawn.
-    drawn: its value as drawn, rad.
+    drawn: angle as drawn, rad.
     """
 
     name: str
@@ -129,13 +130,13 @@ Measured = JointAngle | JointTravel | PointDistance | BodyAngle
 class ToothContact:
     """The place at which the teeth of two bodies push each other.
 
-    bodies: the force is that on the first.
-    carrier: body in which the pitch point is fixed.
+    bodies: names of the two bodies; forces are those on the first.
+    carrier: name of the body in which the pitch point is fixed.
     at: pitch point as drawn, m.
-    along: the force as drawn per newton along the pitch circles; of oblique teeth it has a part
-    along them, where they do not slide.
+    along: force as drawn per newton tangential to the pitch circles; for helical teeth it has an
+    additional component along the teeth, in which they do not slide.
     normal: unit vector as drawn, out of the first body into the second.
-    spread: the force by which the teeth push apart, per newton along the pitch circles.
+    spread: force that pushes the teeth apart, per newton tangential to the pitch circles.
     """
 
     bodies: tuple[str, str]
@@ -150,9 +151,10 @@ class ToothContact:
 class Ratio:
     """A pair of gears, or a rack and gear: measured coordinates in a fixed linear relation.
 
-    weights: of each coordinate, m per rad or m per m; the weighted sum of the changes since the
-    drawing vanishes. It is the distance by which the first body's teeth are ahead of the second's.
-    teeth: None: the relation is kept by couples and forces along its coordinates alone.
+    weights: weight of each coordinate, m per rad or m per m. The weighted sum of the changes since
+    the drawing, the distance by which the first body's teeth are ahead of the second's, vanishes.
+    teeth: place of the teeth; None if couples and forces along the coordinates alone keep the
+    relation.
     """
 
     name: str
@@ -165,12 +167,12 @@ class Ratio:
 class SpaceLinkage:
     """Bodies, joints and measured coordinates in the position in which they are drawn.
 
-    measured: coordinates that drives, gears, springs or loads refer to.
-    driven: names of those that drives prescribe; none of a structure.
+    measured: coordinates to which drives, gears, springs or loads refer.
+    driven: names of the measured coordinates that drives prescribe; a structure has none.
     gravity: acceleration of free fall, world axes, m/s^2.
-    sharing: rules by which joints share what statics leaves open, as springs do.
+    sharing: rules by which joints share statically indeterminate loads, as springs do.
     parallel: rules by which coordinates in parallel, of which one is driven, divide its force.
-    stiffness: of bodies, by which they share what these rules leave open.
+    stiffness: stiffness of bodies, by name; it determines the forces that these rules leave open.
 
     Raises: LinkageError where the parts contradict each other.
     """
@@ -191,7 +193,7 @@ class SpaceLinkage:
 
     @cached_property
     def index(self) -> dict[str, int]:
-        """Number of each body by its name; the ground comes after the last."""
+        """Number of each body by its name; the ground comes after the last body."""
         return {name: i for i, name in enumerate([*(b.name for b in self.bodies), GROUND])}
 
     @cached_property
@@ -202,7 +204,7 @@ class SpaceLinkage:
 
     @cached_property
     def teeth(self) -> tuple[tuple[int, Ratio, ToothContact], ...]:
-        """The ratios that have teeth, each after its number and with them."""
+        """The number of each ratio that has teeth, the ratio and its teeth."""
         meshing = enumerate(self.ratios)
         return tuple((k, r, r.teeth) for k, r in meshing if r.teeth is not None)
 
@@ -240,7 +242,7 @@ def _has_direction(vector: Vector) -> bool:
 
 
 def _contradictions(linkage: SpaceLinkage) -> Iterator[Contradiction]:
-    """Everything by which the parts of a linkage contradict each other."""
+    """All contradictions between the parts of a linkage."""
     if not linkage.joints:
         yield "the linkage has no joints", "no-joints", ()
     bodies = {b.name: b for b in linkage.bodies}
@@ -317,7 +319,7 @@ def _joint_contradictions(joint: SpaceJoint, known: set[str]) -> Iterator[Contra
 
 
 def _body_contradictions(body: RigidBody) -> Iterator[Contradiction]:
-    """Contradictions of one body: its inertia, which no distribution of mass can have."""
+    """Contradictions of one body: an inertia tensor that no distribution of mass can have."""
     tensor = np.asarray(body.inertia, dtype=float)
     moments = np.linalg.eigvalsh(0.5 * (tensor + tensor.T))
     largest = float(np.abs(tensor).max())

@@ -1,4 +1,4 @@
-"""Motion of a linkage in space: exact positions, velocities and accelerations at every instant."""
+"""Motion of a linkage in space, with exact positions, velocities and accelerations."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class SpaceMotion(Instants[SpaceEquations]):
 
     @cached_property
     def factors(self) -> Factors:
-        """Orthogonal factors of the Jacobian at all instants, for one batch at a time."""
+        """Orthogonal factors of the Jacobian at all instants; to be used on one of the `parts`."""
         return self.equations.factors(self.pose)
 
     @cached_property
     def force_factors(self) -> Factors:
-        """The same, of the Jacobian whose multipliers are the forces in joints and teeth."""
+        """Orthogonal factors of the Jacobian whose multipliers are forces in joints and teeth."""
         if not self.linkage.teeth and not self.linkage.parallel:
             return self.factors
         return self.equations.force_factors(self.pose, self.weights)
@@ -54,8 +54,8 @@ class SpaceMotion(Instants[SpaceEquations]):
     def weights(self) -> Floats:
         """Force of each of A actuators, N or N m, per unit of the multiplier of its set, (T, A, D).
 
-        Those of one set divide it by their areas (equal pressure), or by stiffness times
-        displacement (springs on rigid links).
+        The actuators of one set divide the load in proportion to their areas (equal pressure), or
+        to stiffness times displacement (springs on rigid links).
         """
         sets = self.equations.sets
         out, first = np.zeros((len(self), len(self.equations.actuators), len(sets))), 0
@@ -91,7 +91,7 @@ class SpaceMotion(Instants[SpaceEquations]):
 
     @cached_property
     def accelerations(self) -> Rates:
-        """Accelerations of the same, of rotations about world axes."""
+        """Accelerations of all bodies and measured coordinates."""
         return self.equations.rates(self.pose, self.a)
 
     def rotation(self, body: str) -> Floats:
@@ -107,7 +107,7 @@ class SpaceMotion(Instants[SpaceEquations]):
         return np.asarray(self.accelerations.spin[:, self.linkage.index[body]])
 
     def turning(self, k: int) -> Floats:
-        """Angular velocity of the moving body of joint k against its base about the axis, (T,)."""
+        """Angular velocity of joint k about its axis, moving body relative to base, (T,) rad/s."""
         joint = self.linkage.joints[k]
         axis = self.rotation(joint.base) @ axes_of(joint)["w"]
         relative = self.spin(joint.moving) - self.spin(joint.base)
@@ -115,7 +115,7 @@ class SpaceMotion(Instants[SpaceEquations]):
 
     @property
     def rubbing(self) -> Floats:
-        """Speeds (T, N) m/s of joints with friction, their turns times the length scale."""
+        """Speeds (T, N) m/s of joints with friction: angular velocities times the length scale."""
         which = [k for k, joint in enumerate(self.linkage.joints) if joint.friction]
         turns = [self.turning(k)[:, None] for k in which]
         return np.concatenate([np.zeros((len(self), 0)), *turns], axis=1) * (
@@ -123,12 +123,15 @@ class SpaceMotion(Instants[SpaceEquations]):
         )
 
     def place(self, body: str, drawn: Vector) -> Floats:
-        """Position (T, 3) m of a body's point, as drawn (m)."""
+        """Position (T, 3) m of a body's point. drawn: the point as drawn, m."""
         k = self.linkage.index[body]
         return np.asarray(self.pose.centre[:, k] + self.pose.arm(k, drawn))
 
     def point(self, body: str, drawn: Vector) -> SpacePoint:
-        """Position (m), velocity and acceleration, (T, 3) each, of a body's point, as drawn (m)."""
+        """Position (m), velocity and acceleration of a body's point, (T, 3) each.
+
+        drawn: the point as drawn, m.
+        """
         k = self.linkage.index[body]
         arm = self.pose.arm(k, drawn)
         spin, turned = self.spin(body), np.cross(self.spin(body), arm)
@@ -190,8 +193,9 @@ class SpaceCourse(Followed[SpaceMotion]):
 
 
 def space_move(linkage: SpaceLinkage, laws: Sequence[Law], times: Floats) -> SpaceMotion:
-    """The motion under one law per drive at `times` (T,) s, followed from the first of them.
+    """The motion under one law per drive at `times` (T,) s, followed from the earliest time.
 
-    Raises: LinkageError; MotionBlocked.
+    Raises: LinkageError when the drives do not determine the position; MotionBlocked when the
+    linkage cannot follow them.
     """
     return SpaceCourse(linkage, laws, float(times.min()), float(times.max())).at(times)

@@ -1,14 +1,15 @@
 """Forces out of the plane of a planar linkage: along its pins, and moments across them.
 
 All axes of a planar linkage are parallel, so its motion and its forces in the plane do not depend
-on what acts out of it. With those known, every body has three equations left, its force along z
-and its moments about x and y, and so many unknowns has every pin and slider. Stated about one point
-for all bodies, a wrench (fz, Mx, My) enters the equations of the two bodies of its joint with
-factors 1 and -1 only: the tree of joints, which gives the forces in the plane, gives these too,
-and every joint that closes a loop is redundant, three times, at any position.
+on loads out of the plane. With the forces in the plane known, every body has three equations left:
+force along z, and moments about x and y. Every pin and slider has the same three components as
+unknowns. If all bodies use the same reference point, a wrench (fz, Mx, My) enters the equations of
+the two bodies of its joint with factors 1 and -1 only. So the tree of joints that gives the forces
+in the plane also gives these wrenches, and every joint that closes a loop is redundant, with three
+components, at any position.
 
-Elasticity decides about redundant wrenches: they make the complementary energy of the links least
-(Castigliano's second theorem; Timoshenko, Strength of Materials I, ch. X), each a star of
+Elasticity determines the redundant wrenches: they minimise the complementary energy of the links
+(Castigliano's second theorem; Timoshenko, Strength of Materials I, ch. X). Each link is a star of
 cantilevers from its centre to its joints (`loads.space.stiffness`).
 """
 
@@ -37,23 +38,23 @@ from loads.space.stiffness import (
 )
 from pinbase.arrays import Complex, Floats
 
-# Of the largest flexibility: below it nothing in a loop yields, and statics cannot be completed.
+# Relative to the largest flexibility: below it a loop is rigid, and its forces are indeterminate.
 MIN_FLEXIBILITY = 1e-9
 
 
 @dataclass(frozen=True)
 class Offsets:
-    """The places of links along z, m; 0 where nothing is stated.
+    """The positions of links along z, m; 0 where nothing is stated.
 
     connections: z of the middle of a link on its pin, by connection.
-    bodies: z of centres of mass; by default the mean of the body's connections.
+    bodies: z of centres of mass, by body; by default the mean of the body's connections.
     """
 
     connections: Mapping[str, float] = field(default_factory=dict)
     bodies: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, linkage: Linkage, item: str) -> float:
-        """Z of an item's centre of mass, m; of a floating pin the mean of its connections."""
+        """Height z of an item's centre of mass, m; by default the mean of its connections."""
         if item in self.bodies:
             return self.bodies[item]
         on = [
@@ -66,11 +67,12 @@ class Offsets:
 
 @dataclass(frozen=True)
 class SideLoad:
-    """The parts of a load on a body out of the plane.
+    """The components of a load on a body that are out of the plane.
 
-    planar: its part in the plane, which says on which body, where and when it acts.
-    z: of its point, m; None: that of the body's centre.
-    force: along z, N. couple: about x and y, N m; it turns with the body if the load follows it.
+    planar: the load's part in the plane, which states on which body, where and when it acts.
+    z: height of the load's point, m; None for that of the body's centre.
+    force: force along z, N.
+    couple: couples about x and y, N m, which turn with the body if the load follows it.
     """
 
     planar: Applied
@@ -81,9 +83,9 @@ class SideLoad:
 
 @dataclass(frozen=True)
 class Links:
-    """The stiffness of links where they share loads.
+    """The stiffness of links, by which they share loads.
 
-    stated: by body; others are as stiff as their mean.
+    stated: stiffness by body; `complete` gives that of the other bodies.
     """
 
     stated: Mapping[str, LinkStiffness] = field(default_factory=dict)
@@ -93,7 +95,8 @@ class OutOfPlane:
     """The wrenches of all joints of a motion, with the forces in the plane already known.
 
     dynamics: forces in the plane.
-    loads: those with a part out of the plane.
+    loads: loads with a part out of the plane.
+    offsets: positions of the links along z.
     """
 
     def __init__(self, dynamics: Dynamics, loads: Sequence[SideLoad], offsets: Offsets) -> None:
@@ -114,14 +117,15 @@ class OutOfPlane:
 
     @cached_property
     def statics(self) -> Floats:
-        """Wrenches (T, joints, 3) fz, Mx, My on the (moving) bodies about the origin, without the
-        joints that close loops: connections, then sliders.
+        """Wrenches fz, Mx, My on the (moving) bodies about the origin, (T, joints, 3).
+
+        Joints are connections, then sliders. The joints that close loops carry nothing here.
         """
         out = np.einsum("mi,tik->tmk", self._from_items, self._required())
         return np.asarray(out + np.einsum("mg,tgk->tmk", self._from_teeth, self._teeth()))
 
     def _required(self) -> Floats:
-        """Wrenches that joints must exert on every item, (T, items, 3), about the origin."""
+        """Wrenches fz, Mx, My that joints must exert on items, about the origin, (T, items, 3)."""
         items = len(self.linkage.items)
         out = np.zeros((len(self.motion), items, 3))
         out[..., 1:] = _raised(self.dynamics.needed, self.z[:items])
@@ -151,7 +155,10 @@ class OutOfPlane:
         return out
 
     def _teeth(self) -> Floats:
-        """Wrenches of teeth, which press in the plane midway between their bodies, (T, G, 3)."""
+        """Wrenches fz, Mx, My of teeth about the origin, (T, G, 3).
+
+        Teeth press in the plane midway between their bodies.
+        """
         count = len(self.linkage.connections)
         forces = -self.dynamics.reactions.forces[:, count:]
         out = np.zeros_like(forces)
@@ -160,7 +167,7 @@ class OutOfPlane:
             out[:, g, 1:] = _raised(forces[:, g, 0] + 1j * forces[:, g, 1], z)
         return out
 
-    # --- where joints are, and their forces in the plane -----------------------------------------
+    # --- positions of joints, and their forces in the plane --------------------------------------
 
     @cached_property
     def points(self) -> Floats:
@@ -194,7 +201,8 @@ class OutOfPlane:
     def local(self, wrench: Floats, planar: Floats | None = None) -> Floats:
         """The components fz, mx, my at the joints' own points, (T, joints, 3).
 
-        wrench: about the origin. planar: forces in the plane (T, joints, 3), by default none.
+        wrench: (T, joints, 3) fz, Mx, My about the origin.
+        planar: (T, joints, 3) forces in the plane, by default none.
         """
         x, y, z = np.moveaxis(self.points, 2, 0)
         out = wrench.copy()
@@ -210,12 +218,12 @@ class OutOfPlane:
     def shared(self, links: Links) -> Floats:
         """Components fz, mx, my on the (moving) bodies at all joints, (T, joints, 3).
 
-        Raises: LinkageError where nothing in a loop yields.
+        Raises: LinkageError where a loop is rigid.
         """
         statics = self.local(self.statics, self.planar)
         if not self.redundancy:
             return statics
-        # The local components of one unit of each redundant one, (T, joints, 3, 3 K).
+        # Local components due to one unit of each redundant component, (T, joints, 3, 3 K).
         unit = np.zeros((len(self.motion), *self.null.shape, 3, 3))
         for k in range(3):
             wrench = np.zeros((len(self.motion), len(self.null), 3))
@@ -223,12 +231,13 @@ class OutOfPlane:
             unit[..., k] = self.local(wrench)[:, :, None] * self.null[None, :, :, None]
         unit = np.moveaxis(unit, 2, 3).reshape(*unit.shape[:2], 3, -1)
         flexible, coupled = self._flexibility(links)
-        # Least energy: unit^T C (statics + unit y) + unit^T C' planar = 0.
+        # Least energy, with C the flexibility of fz, mx, my and C' that coupling them to the forces
+        # in the plane: unit^T C (statics + unit y) + unit^T C' planar = 0.
         across = np.swapaxes(unit, 2, 3) @ flexible
         G = (across @ unit).sum(axis=1)
         gaps = flexible @ statics[..., None] + coupled @ self.planar[..., None]
         b = -(np.swapaxes(unit, 2, 3) @ gaps).sum(axis=1)
-        # Forces by moments over the length scale, so that the matrix has one dimension.
+        # Divide moments by the length scale, so that all entries of the matrix have one dimension.
         scale = np.tile([1.0, 1.0 / self.linkage.length_scale, 1.0 / self.linkage.length_scale],
                         self.redundancy)  # fmt: skip
         G, b = G / scale[:, None] / scale, b / scale[:, None]
@@ -242,8 +251,10 @@ class OutOfPlane:
         return np.asarray(statics + (unit @ y[:, None])[..., 0])
 
     def _flexibility(self, links: Links) -> tuple[Floats, Floats]:
-        """Flexibility of both links at every joint, (T, joints, 3, 3): of fz, mx, my, and of these
-        under fx, fy, mz.
+        """Flexibility of both links at every joint, (T, joints, 3, 3) each.
+
+        The first is that of the displacements along fz, mx, my under fz, mx, my, the second under
+        fx, fy, mz.
         """
         total = np.zeros((len(self.motion), len(self.null), 6, 6))
         stiffness = stiffness_of(self.linkage, links)
@@ -278,16 +289,16 @@ class OutOfPlane:
 
 
 def stiffness_of(linkage: Linkage, links: Links) -> dict[str, LinkStiffness]:
-    """The stiffness of every body: as stated, else of the usual link of this linkage."""
+    """The stiffness of every body: as stated, otherwise by `complete`."""
     return complete([b.name for b in linkage.bodies], links.stated, linkage.length_scale)
 
 
 def over_stiffness(balance: OutOfPlane, links: Links, ratio: float) -> dict[str, Reactions]:
-    """The reactions for other stiffnesses that are as possible, by what is different.
+    """The reactions for other, equally plausible stiffnesses, by a text that says what differs.
 
-    Each link of which nothing is stated is `ratio` times as stiff and as flexible; then all of them
-    in torsion; then those groups that raise the force, or the moment across the pin, of each
-    connection most.
+    Each link whose stiffness is not stated is `ratio` times as stiff, then as flexible. The same is
+    done for all of these links together, in torsion only. Last come the groups of links that raise
+    the force, or the moment across the pin, of each connection most.
     """
     known = stiffness_of(balance.linkage, links)
     loose = [name for name in known if name not in links.stated]
@@ -302,7 +313,7 @@ def over_stiffness(balance: OutOfPlane, links: Links, ratio: float) -> dict[str,
 
 
 def _raised(force: Complex, z: Floats | float) -> Floats:
-    """Moments Mx, My (..., 2) of forces in the plane at height z."""
+    """Moments Mx, My (..., 2) about the plane z = 0 of forces in the plane at height z."""
     return np.stack([-z * force.imag, z * force.real], axis=-1)
 
 

@@ -18,7 +18,7 @@ from pinbase.arrays import Floats
 
 
 class Solved(Protocol):
-    """A motion in space, solved: what this module asks of it."""
+    """The part of a solved motion in space that this module uses."""
 
     @property
     def dynamics(self) -> SpaceDynamics:
@@ -27,17 +27,18 @@ class Solved(Protocol):
 
     @property
     def reactions(self) -> Reactions:
-        """The reactions at the pins of which the largest forces are wanted."""
+        """The reactions at the pins whose largest forces are wanted."""
         ...
 
 
 @dataclass(frozen=True)
 class SpaceOverTime:
-    """Results for a motion in space as a whole.
+    """Results over the whole time of a motion in space.
 
-    drives: in the linkage's order.
-    violation: largest violation of the power balance, of the largest power of any drive.
-    nodes: (N,) s, instants between which little happens.
+    peaks: largest forces and moments of every connection.
+    drives: force, power and work of every actuator.
+    violation: largest violation of the power balance, relative to the largest power of any drive.
+    nodes: (N,) s, instants between which the quantities change little.
     """
 
     peaks: PeakForces
@@ -54,10 +55,11 @@ def space_over_time(
 ) -> SpaceOverTime:
     """Extremes and means of a motion in space over the time of its samples.
 
-    solve: gives the dynamics at times (T,) s of that course.
+    solve: function that returns the dynamics at times (T,) s of the course.
+    samples: the solved samples.
     corners: times at which a force may jump, s.
 
-    Raises: as `solve`, also where it fails between the samples.
+    Raises: the errors of `solve`, also where it fails between the samples.
     """
     first = (samples, solve(course.path.nodes))
     force, moment = (
@@ -65,7 +67,8 @@ def space_over_time(
         for key in ("forces", "moments")
     )
     scale = course.space.linkage.length_scale
-    # Where all joints are balls, or all loads couples, one of both is round-off alone.
+    # Where all joints are spherical, or all loads are couples, either the moments or the forces are
+    # round-off only.
     force, moment = max(force, moment / scale), max(moment, force * scale)
     least = MIN_DRIVE_SHARE * force * max(scale, 1.0)
     effort = np.maximum(_largest(first, "drive"), least)
@@ -83,7 +86,7 @@ def space_over_time(
     every = np.concatenate([s.dynamics.motion.times for s in first])
     times, place = np.unique(every, return_inverse=True)
     known, start = np.empty((len(times), len(groups))), len(every)
-    for solved in reversed(first):  # one after the other: of long motions they are large
+    for solved in reversed(first):  # one after the other, because those of long motions are large
         start -= len(solved.dynamics.motion)
         known[place[start : start + len(solved.dynamics.motion)]] = columns(solved)
     history = resolved(

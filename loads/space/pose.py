@@ -1,4 +1,4 @@
-"""The position of a linkage in space: places and rotations of its bodies."""
+"""Positions and rotations of the bodies of a linkage in space."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ import numpy as np
 from loads.space.linkage import Vector
 from pinbase.arrays import Floats, Ints
 
-BODY_COORDINATES = 7  # the place of the centre of mass, then four Euler parameters
+BODY_COORDINATES = 7  # position of the centre of mass, then four Euler parameters
 
 
 @dataclass(frozen=True)
 class SpacePose:
     """The position of a linkage of B bodies at T instants; the ground comes after the bodies.
 
-    centre: (T, B + 1, 3) m. turn: (T, B + 1, 4) Euler parameters, of any length.
-    rotation: (T, B + 1, 3, 3), from the drawing.
+    centre: (T, B + 1, 3) centres of mass, m.
+    turn: (T, B + 1, 4) Euler parameters, of any length.
+    rotation: (T, B + 1, 3, 3) rotations since the drawing.
     measured: (T, M) change of the measured coordinates since the drawing, rad or m.
     drawn: (B + 1, 3) m, centres of mass as drawn; the ground's is the origin.
     """
@@ -38,7 +39,7 @@ class SpacePose:
         )
 
     def arm(self, body: int, at: Vector) -> Floats:
-        """Vector (T, 3) m from the centre of mass of a body to its point, which is as drawn."""
+        """Vector (T, 3) m from the centre of mass of a body to its point. at: as drawn, m."""
         return np.asarray(self.rotation[:, body] @ (np.asarray(at) - self.drawn[body]))
 
 
@@ -56,7 +57,7 @@ def rotations(p: Floats) -> Floats:
 
 
 def turning(p: Floats) -> Floats:
-    """Matrices (..., 3, 4), 2 E / |p|^2, by which rates of Euler parameters turn a body."""
+    """Matrices (..., 3, 4), 2 E / |p|^2, from rates of Euler parameters p to angular velocities."""
     w, x, y, z = np.moveaxis(p, -1, 0)
     E = np.stack(
         [np.stack([-x, w, -z, y], -1), np.stack([-y, z, w, -x], -1), np.stack([-z, -y, x, w], -1)],

@@ -1,11 +1,13 @@
 """Wrenches that rigid-body statics leaves open, shared by stated rules and by the links' stiffness.
 
-With more conditions than freedoms some sets of wrenches are in equilibrium by themselves. Of these
-the amounts follow in two steps: the linkage's rules, by which named joints share like springs; then
-least complementary energy of the links, each a beam from its centre of mass to each of its joints.
-Links whose stiffness is not stated are as stiff as the mean of the others, and the result is one of
-several: each of them is also taken a tenth and ten times as stiff, then all in torsion, then groups
-of them that are ten times as stiff as the rest.
+With more conditions than degrees of freedom, some sets of wrenches are in equilibrium by
+themselves. Their amounts follow in two steps. First come the linkage's rules, by which named joints
+share like springs. Then the complementary energy of the links is minimised, each link being a beam
+from its centre of mass to each of its joints.
+
+Links whose stiffness is not stated have the geometric mean of the others. The result is then one of
+several: each of these links is also taken a tenth and ten times as stiff, then all of them in
+torsion, then groups of them that are ten times as stiff as the rest.
 """
 
 from __future__ import annotations
@@ -31,18 +33,18 @@ from loads.space.stiffness import (
 )
 from pinbase.arrays import Floats
 
-STIFFNESS_RATIO = 10.0  # of a link whose stiffness is not stated, up and down
-OPEN_TOLERANCE = 1e-9  # smallest over largest singular value: below it the energy leaves a set open
-MIN_END = 1e-9  # over the length scale: a joint this near to the centre of mass has no beam
+STIFFNESS_RATIO = 10.0  # variation of a stiffness that is not stated, up and down
+OPEN_TOLERANCE = 1e-9  # singular value over the largest, up to which a set remains undetermined
+MIN_END = 1e-9  # arm over the length scale, up to which a joint at the centre has no beam
 
 
 @dataclass(frozen=True)
 class _End:
     """The beam of a body to one of its joints.
 
-    joint, body: their numbers.
-    rows: (6, 6), of which the squares of the products with the wrench (force, moment at the joint;
-    axes as drawn) are twice the complementary energy.
+    joint, body: numbers of the joint and the body.
+    rows: (6, 6) matrix, whose product with the wrench (force, moment at the joint; axes as drawn)
+    has a sum of squares of twice the complementary energy.
     """
 
     joint: int
@@ -51,16 +53,19 @@ class _End:
 
 
 def unstated(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> tuple[str, ...]:
-    """Bodies at joints that carry sets in equilibrium by themselves, of no stated stiffness."""
+    """Bodies without stated stiffness at joints that carry self-equilibrated sets of wrenches.
+
+    stressed: names of these joints.
+    """
     stated = {*linkage.stiffness, GROUND}
     ends = (b for j in linkage.joints if j.name in stressed for b in (j.base, j.moving))
     return tuple(dict.fromkeys(b for b in ends if b not in stated))
 
 
 def others(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> dict[str, SpaceLinkage]:
-    """The same linkage with other stiffness that is as possible, by what is different.
+    """The linkage with other, equally plausible stiffness, by a text that says what differs.
 
-    stressed: joints that carry sets in equilibrium by themselves.
+    stressed: names of the joints that carry self-equilibrated sets of wrenches.
     """
     loose = unstated(linkage, stressed)
     each = variations(stiffness_of(linkage), loose, STIFFNESS_RATIO)
@@ -70,10 +75,10 @@ def others(linkage: SpaceLinkage, stressed: tuple[str, ...]) -> dict[str, SpaceL
 def groups(
     linkage: SpaceLinkage, stressed: tuple[str, ...], reactions: Mapping[str, Reactions]
 ) -> dict[str, SpaceLinkage]:
-    """The same linkage with groups of links stiffer than the rest, those that raise the force or
-    the moment of a joint most.
+    """The linkage with the groups of stiffer links that raise the force or moment of a joint most.
 
-    reactions: of each of `others`, by its text.
+    stressed: names of the joints that carry self-equilibrated sets of wrenches.
+    reactions: reactions of each of `others`, by its text.
     """
     loads = {text: load_sizes(r.forces, r.moments) for text, r in reactions.items()}
     loose = unstated(linkage, stressed)
@@ -82,16 +87,16 @@ def groups(
 
 
 def stiffness_of(linkage: SpaceLinkage) -> dict[str, LinkStiffness]:
-    """The stiffness of every body: as stated, else of the usual link of this linkage."""
+    """The stiffness of every body: as stated, otherwise by `complete`."""
     names = [b.name for b in linkage.bodies]
     return complete(names, linkage.stiffness, linkage.length_scale)
 
 
 @dataclass(frozen=True)
 class RedundantSets:
-    """The k sets in equilibrium by themselves at the instants of a pose.
+    """The k self-equilibrated sets of wrenches at the instants of a pose.
 
-    multipliers: (T, rows, k). wrenches: (T, J + G, 6, k), of joints, then of teeth.
+    multipliers: (T, rows, k). wrenches: (T, J + G, 6, k) of joints, then of teeth.
     """
 
     multipliers: Floats
@@ -99,7 +104,7 @@ class RedundantSets:
 
 
 def redundant_sets(equations: SpaceEquations, pose: SpacePose, null: Floats) -> RedundantSets:
-    """The sets with these multipliers (T, rows, k)."""
+    """The self-equilibrated sets from their multipliers `null` (T, rows, k)."""
     each = [equations.transmitted(pose, s) for s in np.moveaxis(null, -1, 0)]
     return RedundantSets(null, np.stack(each, axis=-1))
 
@@ -111,12 +116,13 @@ def shared(
     f: Floats,
     sets: RedundantSets,
 ) -> Floats:
-    """The multipliers (T, rows) with the sets that rules and stiffness demand.
+    """The multipliers (T, rows) plus the self-equilibrated sets in the amounts that are demanded.
 
-    linkage: has the rules and the stiffness.
+    Rules come first; the stiffness determines the sets that they leave open.
+    linkage: the linkage with its rules and stiffness.
     f: (T, rows) multipliers in equilibrium with the loads.
 
-    Raises: LinkageError where neither rules nor stiffness determine them.
+    Raises: LinkageError where neither rules nor stiffness determine the amounts.
     """
     first, null, own = equations.transmitted(pose, f), sets.multipliers, sets.wrenches
     for rows in (_rules(linkage), _Energy(linkage, pose)):
@@ -142,8 +148,10 @@ def shared(
 
 
 def _least(A: Floats, b: Floats) -> tuple[Floats, Floats]:
-    """Amounts (T, k) that minimise |A amounts + b|, the shortest, and a basis (T, k, l) of those
-    that A leaves open. A: (T, m, k). b: (T, m).
+    """The shortest amounts (T, k) that minimise |A amounts + b|.
+
+    Returns also a basis (T, k, l) of the amounts that A leaves undetermined.
+    A: (T, m, k). b: (T, m).
     """
     missing = max(A.shape[2] - A.shape[1], 0)  # rows of zeros give a complete basis
     A, b = np.pad(A, ((0, 0), (0, missing), (0, 0))), np.pad(b, ((0, 0), (0, missing)))
@@ -155,7 +163,7 @@ def _least(A: Floats, b: Floats) -> tuple[Floats, Floats]:
 
 
 class _Rules:
-    """The rows of all rules: force over the root of the stiffness of each named joint or gear."""
+    """The rows of all rules: force over the square root of stiffness, by named joint or gear."""
 
     def __init__(self, linkage: SpaceLinkage) -> None:
         names = [name for name, _ in linkage.forces]

@@ -1,8 +1,8 @@
 """Stiffness of links as beams, and flexibility of the cantilevers from their centres to joints.
 
-Only ratios of stiffness matter where links share loads. A link is a star of cantilevers: from its
-centre of mass, which holds them, one to each of its joints (Euler-Bernoulli beams with
-Saint-Venant's torsion; Timoshenko, Strength of Materials I, ch. V and II, ch. VI).
+Only ratios of stiffness matter where links share loads. A link is a star of cantilevers, clamped at
+its centre of mass, one to each of its joints (Euler-Bernoulli beams with Saint-Venant's torsion;
+Timoshenko, Strength of Materials I, ch. V and II, ch. VI).
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ import numpy as np
 
 from pinbase.arrays import Floats
 
-POISSON_RATIO = 0.3  # of the bars, for torsion against bending
-NOMINAL_SLENDERNESS = 10.0  # length over diameter of links of which no stiffness is stated
+POISSON_RATIO = 0.3  # Poisson's ratio of the bars, for the ratio of torsion to bending
+NOMINAL_SLENDERNESS = 10.0  # length scale over diameter of links where no stiffness is stated
 MIN_ARM = 1e-12  # m: a joint this close to the centre has no cantilever
-MIN_SQUARE = 1e-2  # part of a unit vector across a cantilever: with less it says no depth
+MIN_SQUARE = 1e-2  # least component of a unit vector across a cantilever that defines the depth
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,10 @@ class LinkStiffness:
     """The stiffness of a link's section, in any units that all links share.
 
     axial: EA, N.
-    bending, across: EI against bending along the depth of the section, and across it, N m^2.
+    bending, across: EI for deflection along the depth of the section, and across it, N m^2.
     torsion: GJ, N m^2.
-    depth: direction of the depth as drawn; None: in the plane of the drawing, across the link.
+    depth: direction of the depth as drawn; None for the direction in the plane of the drawing,
+    across the link.
     """
 
     axial: float
@@ -38,7 +39,7 @@ class LinkStiffness:
     depth: tuple[float, float, float] | None = None
 
     def times(self, factor: float) -> LinkStiffness:
-        """The same link, stiffer by a factor in everything."""
+        """The link with all stiffnesses multiplied by a factor."""
         return replace(
             self,
             axial=self.axial * factor,
@@ -48,7 +49,7 @@ class LinkStiffness:
         )
 
     def with_torsion(self, factor: float) -> LinkStiffness:
-        """The same link with another stiffness in torsion."""
+        """The link with its stiffness in torsion multiplied by a factor."""
         return replace(self, torsion=self.torsion * factor)
 
 
@@ -61,9 +62,11 @@ def round_link(diameter: float, youngs_modulus: float = 1.0, bore: float = 0.0) 
 
 
 def flat_link(depth: float, width: float, youngs_modulus: float = 1.0) -> LinkStiffness:
-    """The stiffness of a rectangular bar. depth: in the plane, m. width: across it, m.
+    """The stiffness of a rectangular bar.
 
-    Torsion by the approximation of Roark, Formulas for Stress and Strain, table 10.1, within 4 %.
+    Torsion follows from an approximation within 4 % (Roark, Formulas for Stress and Strain, table
+    10.1).
+    depth: in the plane of the drawing, m. width: across that plane, m. youngs_modulus: Pa.
     """
     a, b = max(depth, width) / 2.0, min(depth, width) / 2.0
     twist = a * b**3 * (16.0 / 3.0 - 3.36 * b / a * (1.0 - b**4 / (12.0 * a**4)))
@@ -79,10 +82,11 @@ def flat_link(depth: float, width: float, youngs_modulus: float = 1.0) -> LinkSt
 def complete(
     bodies: Sequence[str], stated: Mapping[str, LinkStiffness], length_scale: float
 ) -> dict[str, LinkStiffness]:
-    """The stiffness of every body; what is not stated is the geometric mean of what is.
+    """The stiffness of every body: as stated, otherwise the geometric mean of the stated ones.
 
-    Where nothing is stated, all links are round bars, a tenth as thick as the linkage is large.
-    length_scale: of the linkage, m.
+    Where nothing is stated, all links are round bars with a tenth of the length scale as diameter.
+    Rigid links do not enter the mean.
+    length_scale: length scale of the linkage, m.
     """
     mean = round_link(length_scale / NOMINAL_SLENDERNESS)
     if known := [s for s in stated.values() if np.isfinite(s.axial)]:
@@ -92,9 +96,9 @@ def complete(
 
 
 def cantilever(arm: Floats, link: LinkStiffness) -> Floats:
-    """The flexibility (6, 6) at the end of a cantilever, of force, then moment, in world axes.
+    """The flexibility (6, 6) at the end of a cantilever, for force, then moment, in world axes.
 
-    arm: (3,) m, from the fixed end to the loaded one; without length it does not yield.
+    arm: (3,) m, from the fixed end to the loaded end; a cantilever without length is rigid.
     """
     length = float(np.linalg.norm(arm))
     out = np.zeros((6, 6))
@@ -117,13 +121,17 @@ def cantilever(arm: Floats, link: LinkStiffness) -> Floats:
 
 
 def _depth(along: Floats, link: LinkStiffness) -> Floats:
-    """The direction of the depth of a link's section, square to a cantilever `along` (3,)."""
+    """The direction (3,) of the depth of a link's section.
+
+    along: (3,) unit vector of the cantilever, to which the depth is perpendicular.
+    """
     if link.depth is not None:
         depth = np.array(link.depth) / np.linalg.norm(link.depth)
         depth -= (depth @ along) * along
         if (size := float(np.linalg.norm(depth))) > MIN_SQUARE:
             return np.asarray(depth / size)
-    # In the plane, so that `across` bends towards z; for a cantilever along z any one will do.
+    # By default the depth is in the plane, so that `across` resists deflection along z. For a
+    # cantilever along z any direction across it will do.
     up = np.array([0.0, 0.0, 1.0]) if abs(along[2]) < 1.0 - 1e-9 else np.array([1.0, 0.0, 0.0])
     side = np.cross(up, along)
     return np.asarray(side / np.linalg.norm(side))
@@ -132,10 +140,10 @@ def _depth(along: Floats, link: LinkStiffness) -> Floats:
 def variations(
     known: Mapping[str, LinkStiffness], loose: Sequence[str], ratio: float
 ) -> dict[str, dict[str, LinkStiffness]]:
-    """Other stiffnesses of all bodies that are as possible, by what is different.
+    """Other, equally plausible stiffnesses of all bodies, by a text that says what differs.
 
-    Each of the `loose` ones, of which nothing is stated, is `ratio` times as stiff and as flexible;
-    then all of them in torsion.
+    Each of the `loose` links, whose stiffness is not stated, is `ratio` times as stiff, then as
+    flexible. The same is done for all loose links together, in torsion only.
     """
     out: dict[str, dict[str, LinkStiffness]] = {}
     for times, text in _ends(ratio):
@@ -152,7 +160,7 @@ def _ends(ratio: float) -> tuple[tuple[float, str], ...]:
 
 
 def load_sizes(forces: Floats, moments: Floats) -> Floats:
-    """The largest force, then moment, of each of C connections over all instants, (2 C,).
+    """The largest forces of C connections over all instants, then the largest moments, (2 C,).
 
     forces, moments: (T, C, components).
     """
@@ -166,13 +174,13 @@ def worst_groups(
     ratio: float,
     loads: Mapping[str, Floats],
 ) -> dict[str, dict[str, LinkStiffness]]:
-    """Stiffnesses with some of the loose links `ratio` times as stiff as the rest, by which: those
-    that raise each of some loads most.
+    """Stiffnesses with a group of loose links `ratio` times as stiff as the rest, by a text.
 
-    A link that raises a load when it alone is stiffer is taken to raise it beside others, too. Of a
-    side load on a landing gear of ten links, each load found so is at least 0.88 of the largest of
-    800 groups drawn at random; with one link alone it is 0.4 to 1 of that.
-    loads: sizes (K,) by the text of each of `variations`.
+    There is one group for each of K loads, chosen to raise this load most: the links that raise the
+    load when each of them alone is stiffer are assumed to raise it together, too. Checked with a
+    side load on a landing gear of ten links: each load found in this way is at least 0.88 of the
+    largest over 800 random groups; with a single stiffer link it is 0.4 to 1 of that.
+    loads: sizes (K,) of the loads, by the text of each of `variations`.
     """
     if len(loose) < 2:
         return {}
@@ -182,7 +190,7 @@ def worst_groups(
     for stiff in np.unique(raise_, axis=1).T:
         few = stiff if 2 * stiff.sum() <= len(loose) else ~stiff
         if not few.any():
-            continue  # all alike
+            continue  # all links are equally stiff
         names = ", ".join(name for name, here in zip(loose, few, strict=True) if here)
         text = f"{names} {stiffer if few is stiff else softer} than the rest"
         ends = {x: root if s else 1.0 / root for x, s in zip(loose, stiff.tolist(), strict=True)}

@@ -1,4 +1,4 @@
-"""Where pins lie along their axes so that links are straight."""
+"""Positions of pins along their axes at which links are straight."""
 
 from __future__ import annotations
 
@@ -17,18 +17,21 @@ def straight(
     stated: Mapping[str, float],
     roots: Mapping[str, float] | None = None,
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Place pins along z so that each link meets all its pins at one height, as near as can be.
+    """Place pins along z so that each link meets all its pins at one height, as nearly as possible.
 
-    linkage: planar.
-    middles: z of the middle of a connection's band from the start of its pin, m; 0 of others.
-    stated: z of the start of a joint's pin, m.
-    roots: z at which the body that carries a joint's pin holds it, from its start, m; of others
-    the mean of the links on it. Where a pin's z is stated it may lie beside the body.
+    linkage: planar linkage.
+    middles: z of the middle of a connection's band from the start of its pin, m, by connection; 0
+    for others.
+    stated: z of the start of a pin, m, by joint.
+    roots: z from the start of a pin at which its body carries it, m, by joint; for others the mean
+    of the links on the pin. A pin whose z is stated may lie beside the body that carries it.
 
-    Returns: z of every connection, m, and of every body how far its connections and the pins that
-    it carries lie from its middle plane, m. Links that no z places have theirs at z = 0 in the
-    mean.
+    Returns the z of every connection, m; and for every body the largest distance of its connections
+    and of the pins that it carries from its middle plane, m. Links whose z nothing determines have
+    a mean z of 0.
     """
+    # Unknowns: the starts of the pins whose z is not stated, then the middle planes of the bodies.
+    # Each body on a pin gives an equation: its height on the pin is in its middle plane.
     free = [j.name for j in linkage.joints if j.name not in stated]
     bodies = [b.name for b in linkage.bodies]
     rows, sides = list[Floats](), list[float]()
@@ -51,7 +54,9 @@ def straight(
             rows.append(row)
             sides.append(0.0)
     placed, _, rank, _ = np.linalg.lstsq(np.array(rows), np.array(sides), rcond=None)
-    loose = np.linalg.svd(np.array(rows))[2][rank:].T  # what still moves along z
+    # Movements along z that nothing determines are chosen so that the middle planes of the bodies
+    # are as close to z = 0 as possible.
+    loose = np.linalg.svd(np.array(rows))[2][rank:].T
     placed = (
         placed - loose @ np.linalg.lstsq(loose[len(free) :], placed[len(free) :], rcond=None)[0]
     )
@@ -70,9 +75,9 @@ def _meetings(
     roots: Mapping[str, float],
     carriers: Mapping[str, str | None],
 ) -> list[tuple[str, str, float]]:
-    """Every body on a joint but the ground, the joint, and the body's height on its pin, m.
+    """Every body (except the ground) on a joint, the joint, and the body's height on its pin, m.
 
-    carriers: of the pins that lie where their carriers are, by joint.
+    carriers: body that carries the pin, by joint, of the pins whose z is not stated.
     """
     out = [(c.body, j.name, middles.get(c.name, 0.0)) for j, c in linkage.connections]
     for joint in linkage.joints:

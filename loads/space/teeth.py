@@ -1,4 +1,4 @@
-"""Teeth of gears in space: where they push each other, and the rows of their equations."""
+"""Pitch points and forces of gears in space, and the rows of their equations."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from pinbase.arrays import Floats
 
 
 def pitch_points(linkage: SpaceLinkage, pose: SpacePose) -> list[tuple[Floats, Floats, Floats]]:
-    """Pitch point (m), force per newton along the pitch circles, and normal of all teeth, (T, 3)
-    each.
+    """Pitch point (m), force per newton along the pitch circles, and normal of all teeth.
+
+    They are (T, 3) each.
     """
     out = []
     for _, _, teeth in linkage.teeth:
@@ -26,7 +27,7 @@ def write_tooth_rows(linkage: SpaceLinkage, pose: SpacePose, scale: Floats, J: F
     """Write the speeds at which teeth slide along the pitch circles into the rows of the ratios.
 
     scale: (n,) length per unit of each coordinate.
-    J: (T, ratios, n), the rows by scaled coordinates.
+    J: (T, ratios, n), rows of the ratios, for scaled coordinates; overwritten.
     """
     turns = turning(pose.turn)
     points = pitch_points(linkage, pose)
@@ -47,7 +48,8 @@ def tooth_forces(
 ) -> Floats:
     """Force (T, G, 3) N on the first body of all teeth.
 
-    f: (T, ratios) N, multipliers of the ratios. spread: (T, G) N, by which the teeth push apart.
+    f: (T, ratios) N, multipliers of the ratios.
+    spread: (T, G) N, forces that push the teeth apart; by default none.
     """
     out = np.zeros((len(f), len(linkage.teeth), 3))
     for g, (_, along, normal) in enumerate(pitch_points(linkage, pose)):

@@ -1,13 +1,16 @@
 """Transmission angles in space, as in a plane: how effectively a link drives the joint it moves.
 
-Without loads of its own a link carries only wrenches that do no work on the free motions of its two
+A link without loads of its own carries only wrenches that do no work on the free motions of its two
 joints (Ball, A treatise on the theory of screws, 1900; Chen and Angeles, Generalized transmission
 index and transmission quality for spatial linkages, Mech. Mach. Theory 42 (2007) 1225). Between two
-balls, or a ball and the cross of a universal joint, that is a force along the line between them;
-between a pin and a ball, a force through the ball in the plane of both; between pins of parallel
-axes, a force in the plane of the pins beside what crosses it. The transmission angle is 90 degrees
-minus the smallest angle between such a force and the velocity of the joint: 90 is best, at 0 the
-link cannot move the joint. At a pin forces and velocities across it count, as in a plane.
+spherical joints, or a spherical and a universal joint, this is a force along the line between them.
+Between a pin and a spherical joint, it is a force through the spherical joint in the plane of both.
+Between two pins with parallel axes, it is a force in the plane of both pins, apart from components
+that cross this plane.
+
+The transmission angle is 90 degrees minus the smallest angle between such a force and the velocity
+of the joint. An angle of 90 degrees is best; at 0 the link cannot move the joint. At a pin, only
+forces and velocities across the pin count, as in a plane.
 """
 
 from __future__ import annotations
@@ -34,16 +37,17 @@ from loads.space.linkage import (
 from loads.space.motion import SpaceMotion
 from pinbase.arrays import Floats
 
-SAME_LINE = 1e-9  # of the length scale: joints of a link this near to one line or point are one end
-PARALLEL = 1e-6  # sine of the angle between axes that are parallel
+SAME_LINE = 1e-9  # of the length scale: joints of a link this close to a line or point are one end
+PARALLEL = 1e-6  # sine of the angle between axes, up to which they count as parallel
 BALLS: tuple[Kind, ...] = ("spherical", "universal")
 
 
 @dataclass(frozen=True)
 class _End:
-    """An end of a link: a pin, a ball or a cross.
+    """An end of a link: a pin (revolute), spherical or universal joint.
 
-    joint: there. bodies: at it besides the link, by the names of their pieces.
+    joint: the joint at the end, the first if there are several.
+    bodies: names of the other pieces (see `_pieces`) at the end.
     """
 
     joint: SpaceJoint
@@ -56,11 +60,11 @@ class _End:
 
 
 def transmission_angles_in_space(motion: SpaceMotion) -> dict[tuple[str, str], Floats]:
-    """Transmission angles, (T,) rad, by link and joint; of joints at one end, the first.
+    """Transmission angles, (T,) rad, by link and joint; of several joints at one end, by the first.
 
-    They are of links as of `loads.motion.transmission_angles`, with a ball or cross at one of their
-    two ends and a ball or pin at the other, or with two parallel pins. Bodies that are fixed
-    together are one link.
+    The conditions on a link are those of `loads.motion.transmission_angles`. In addition it has a
+    spherical joint at one end and a spherical, universal or revolute joint at the other, or two
+    parallel pins. Bodies that are fixed together are one link.
     """
     linkage, out = motion.linkage, dict[tuple[str, str], Floats]()
     pieces = _pieces(linkage)
@@ -132,7 +136,7 @@ def _links(
 
 
 def _one_end(first: SpaceJoint, second: SpaceJoint, length: float) -> bool:
-    """Whether two joints of a link are at one end: at one point, or pins on one line."""
+    """Whether two joints of a link form one end: at one point, or pins on one line."""
     apart = np.subtract(second.at, first.at)
     if first.kind == second.kind == "revolute":
         a, b = axes_of(first)["w"], axes_of(second)["w"]
@@ -143,7 +147,7 @@ def _one_end(first: SpaceJoint, second: SpaceJoint, length: float) -> bool:
 
 
 def _others(joints: list[SpaceJoint], link: str, pieces: dict[str, str]) -> tuple[str, ...]:
-    """The pieces at some joints besides a link."""
+    """The pieces other than a link at some joints."""
     every = (pieces[body] for joint in joints for body in (joint.base, joint.moving))
     return tuple(dict.fromkeys(piece for piece in every if piece != link))
 
@@ -187,7 +191,7 @@ def _at_rest(motion: SpaceMotion, rates: Rates, pieces: dict[str, str]) -> set[s
 
 
 def _turns_at(motion: SpaceMotion, rates: Rates, link: str, end: _End) -> bool:
-    """Whether a link turns relative to another body at an end; else they move as one."""
+    """Whether a link turns relative to another body at an end; otherwise they move as one body."""
     index = motion.linkage.index
     own = rates.spin[:, index[link]]
     apart = [np.linalg.norm(rates.spin[:, index[b]] - own, axis=-1).max() for b in end.bodies]
@@ -211,14 +215,15 @@ def _angle(motion: SpaceMotion, rates: Rates, link: str, end: _End, other: _End)
         axis = end.axis
         if pins and np.linalg.norm(np.cross(axis, other.axis)) > PARALLEL:
             return None
-        # Across the pin, and where the line from the other end meets it.
+        # Only components across the pin count, at the point of the pin axis nearest the other end.
         along_pin, across = axis @ drawn, turn @ axis
         drawn = drawn - axis * along_pin
         velocity = velocity + np.cross(rates.spin[:, k], along_pin * across)
         velocity = velocity - across * np.sum(across * velocity, axis=1, keepdims=True)
     along = turn @ drawn
     if other.joint.kind == "revolute" and end.joint.kind != "revolute":
-        # A force in the plane of the pin and the ball: the part of the velocity in that plane.
+        # A force in the plane of pin and spherical joint is nearest to the velocity if it is along
+        # the velocity's projection on that plane.
         normal = np.cross(turn @ other.axis, along)
         out = np.sum(normal * velocity, axis=1, keepdims=True) * normal
         along = velocity - out / np.sum(normal**2, axis=1, keepdims=True)

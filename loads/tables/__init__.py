@@ -1,1 +1,1 @@
-"""Strict reading of the user's files: CSV tables, and only regular files."""
+"""Strict reading of the user's files, which are tables in regular files."""

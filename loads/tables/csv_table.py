@@ -18,17 +18,17 @@ MAX_TABLE_BYTES = 64 * MB
 MAX_ROWS = 100_000  # ten seconds at 10 kHz; a million instants take minutes and gigabytes
 MAX_COLUMNS = 1_000
 MAX_LINE_CHARACTERS = 1_000_000
-SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # those that other programs write
+SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}  # separators of other programs
 DECIMAL_COMMA_PATTERN = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
 THOUSANDS_PATTERN = re.compile(r"[-+]?\d{1,3},\d{3}")
 WITH_UNIT_PATTERN = re.compile(r"[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?\s*(?:[^\W\d_]|[/^*·. ])+\d?")
 MINUS = "\N{MINUS SIGN}"  # as reports print it
-MAX_SHOWN_CHARACTERS = 40  # of a cell, in messages
-MAX_CELL_VALUE = 1e18  # its fourth power is still finite; the limit for a study's quantities, too
+MAX_SHOWN_CHARACTERS = 40  # characters of a cell that messages show
+MAX_CELL_VALUE = 1e18  # its fourth power is still finite; also the limit of a study's quantities
 
 
 class TableError(CodedError, ValueError):
-    """A table cannot be used; the message names the file, the line and what would be right."""
+    """A table cannot be used; the message names the file, the line and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,10 @@ class TableLine:
     cells: dict[str, str]
 
     def number(self, column: str) -> float:
-        """The number in a cell. Raises: TableError unless finite and at most MAX_CELL_VALUE."""
+        """The number in a cell.
+
+        Raises: TableError unless the cell is a finite number of at most MAX_CELL_VALUE.
+        """
         text, what = self.cells[column], f"{self.where}: {column}"
         try:
             value = float(text)
@@ -54,7 +57,10 @@ class TableLine:
 
 
 def require_in_range(what: str, value: float) -> None:
-    """Raises: TableError unless a value is finite and at most MAX_CELL_VALUE. what: it is."""
+    """Raise TableError unless a value is finite and at most MAX_CELL_VALUE.
+
+    what: place and name of the value, for the message.
+    """
     if not math.isfinite(value):
         raise TableError(f"{what} is not finite", "not-finite")
     if abs(value) > MAX_CELL_VALUE:
@@ -62,14 +68,14 @@ def require_in_range(what: str, value: float) -> None:
 
 
 def not_a_number(what: str, text: str) -> TableError:
-    """The error of a cell with a text. what: the place and column of the cell."""
+    """The error for a cell whose text is not a number. what: place and column of the cell."""
     code = "decimal-comma" if DECIMAL_COMMA_PATTERN.fullmatch(text) else "not-a-number"
     shown = text[:MAX_SHOWN_CHARACTERS]
     return TableError(f"{what} = {shown!r} is not a number{_remedy(text)}", code)
 
 
 def _remedy(text: str) -> str:
-    """The end of a message: the right way to write a cell that is not a number, if known."""
+    """The end of a message on a cell that is not a number: how to write the cell, if known."""
     point = text.replace(",", ".")
     if THOUSANDS_PATTERN.fullmatch(text):
         return f"; write {text.replace(',', '')}, or {point} with a point"
@@ -77,7 +83,7 @@ def _remedy(text: str) -> str:
         return f"; write {point}, with a point"
     if text.startswith(MINUS):
         return f"; write its minus as a hyphen: {text.replace(MINUS, '-')[:MAX_SHOWN_CHARACTERS]}"
-    # Matching takes time with the square of the length, so hostile cells are not tried.
+    # Matching takes time with the square of the length, so long (hostile) cells are not matched.
     short = len(text) <= MAX_SHOWN_CHARACTERS
     return "; cells have no units" if short and WITH_UNIT_PATTERN.fullmatch(text) else ""
 
@@ -88,7 +94,7 @@ def read_table(
     """The rows of a CSV table.
 
     needed: columns that the table must have.
-    optional: further columns that are allowed; None: any.
+    optional: further columns that are allowed; None allows any.
 
     Raises: TableError for a file that is not such a table.
     """
@@ -133,9 +139,9 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
 
 
 def _cells(text: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
-    """The cells of each line that has any, after the line's number."""
+    """The number and the cells of each line that has cells."""
     lines = csv.reader(text, skipinitialspace=True)
-    return ((lines.line_num, cells) for cells in lines if cells)  # blank lines are no rows
+    return ((lines.line_num, cells) for cells in lines if cells)  # blank lines are not rows
 
 
 def _rows(
@@ -143,9 +149,11 @@ def _rows(
     lines: Iterator[tuple[int, list[str]]],
     allowed: tuple[Sequence[str], Sequence[str] | None],
 ) -> Iterator[TableLine]:
-    """The rows from the cells of lines. allowed: columns needed and optional, as of `read_table`.
+    """The rows from the cells of lines.
 
-    Raises: TableError for wrong columns, rows of another length, too many rows or none.
+    allowed: columns needed and optional, as for `read_table`.
+
+    Raises: TableError for wrong columns, rows of another length, too many rows, or no rows.
     """
     _, cells = next(lines, (1, list[str]()))
     columns = [name.strip() for name in cells]
@@ -168,7 +176,7 @@ def _rows(
 def _require_columns(
     path: Path, columns: list[str], needed: Sequence[str], optional: Sequence[str] | None
 ) -> None:
-    """Raises: TableError unless the columns are those needed, with optional ones, each once."""
+    """Raise TableError unless the columns are those needed and optional ones, each only once."""
     expected = f"needed: {','.join(needed)}" + (
         f"; optional: {', '.join(optional)}" if optional else ""
     )
@@ -193,7 +201,7 @@ def _require_columns(
 
 
 def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> None:
-    """Raises: TableError when another separator would give the columns needed."""
+    """Raise TableError when another separator would give one of the columns needed."""
     for separator, name in SEPARATORS.items():
         names = [name.strip() for column in columns for name in column.split(separator)]
         if len(names) > len(columns) and set(needed) & set(names):
@@ -205,7 +213,10 @@ def _require_commas(path: Path, columns: list[str], needed: Sequence[str]) -> No
 
 
 def cell_count(where: str, cells: Sequence[object], width: int) -> TableError:
-    """The error of a row that is longer or shorter than the header."""
+    """The error for a row that is longer or shorter than the header.
+
+    where: place of the row. width: number of cells of the header.
+    """
     what = f"{where}: {len(cells)} cells, but the header has {width}"
     whole = sum(isinstance(cell, str) and cell.strip().isdigit() for cell in cells)
     if len(cells) > width and whole > 1:

@@ -21,16 +21,17 @@ MAX_LISTED_COLUMNS = 12
 
 Turn = tuple[tuple[float, float, float], ...]
 SAME_AXES: Turn = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-Unit = Callable[[str, str], float]  # (unit, dimension) -> its SI value; "": the table's default
+Unit = Callable[[str, str], float]  # (unit, dimension) -> SI value; unit "": the table's default
 
 
 @dataclass(frozen=True)
 class JointAxes:
-    """The way in which a table gives the force of a connection.
+    """The axes and the reference point in which a table gives the force of a connection.
 
-    turn: (3, 3) the pin's axes x, y, z in the table's axes, by row; negative where the table has
+    turn: (3, 3) rows are the pin's axes x, y, z in the table's axes, negative where the table has
     the force of the pin on the link.
-    arm: (3,) m, pin axes, from the middle of the band to the point about which moments are taken.
+    arm: (3,) m, pin axes, vector from the middle of the band to the point about which the table's
+    moments are taken.
     """
 
     turn: Turn = SAME_AXES
@@ -44,7 +45,7 @@ class JointAxes:
 
     @property
     def needed(self) -> tuple[str, ...]:
-        """The table's components that give the pin's transverse force."""
+        """The components of the table from which the pin's transverse force follows."""
         across = np.abs(np.array(self.turn)[:2]).max(axis=0) > 0.0
         return tuple(c for c, use in zip(FORCE_COMPONENTS, across, strict=False) if use)
 
@@ -53,16 +54,17 @@ class JointAxes:
 class Layout:
     """The meaning of a table's columns and labels.
 
-    case: name of the case to read from a table with a column `case`.
-    columns: header of each column by its meaning, preceded by a minus where the sign differs; its
-    number from 1 in a table without a header.
-    labels: text in the column `connection` by the connection's name here.
+    case: name of the load case to read from a table with a column `case`.
+    columns: header of each column by its meaning, preceded by a minus where the sign differs; in a
+    table without a header, the column's number from 1.
+    labels: text in the column `connection` by the connection's name in the study.
     step: time between the rows of one connection in a table without times, s.
-    offset: s, added to all times.
-    units: where the study states them, by the meaning of a column or by dimension.
+    offset: time added to all times, s.
+    units: units stated in the study, by the meaning of a column or by dimension.
     unit_needed: meanings of columns, or dimensions, without a default unit.
-    axes: by connection, where the table's differ from the pin's; "": of all others.
-    reading: what the study says of the file.
+    axes: axes by connection, where those of the table differ from the pin's; the key "" stands for
+    all other connections.
+    reading: properties of the file that the study states.
     """
 
     case: str
@@ -92,9 +94,10 @@ class Layout:
 class ForceColumn:
     """A column of a table.
 
-    index: from 0.
-    factor: from its numbers to SI, negative where the sign differs.
-    connection: whose component it is, in a table with a column per component; otherwise None.
+    index: number of the column, from 0.
+    factor: factor from its numbers to SI, negative where the sign differs.
+    connection: connection to which the component belongs, in a table with a column per component;
+    otherwise None.
     meaning: fx, .., mz, time, case, connection or body.
     """
 
@@ -134,9 +137,10 @@ def column_index(grid: TableGrid, meaning: str, at: str | int) -> int:
 def force_columns(grid: TableGrid, layout: Layout, unit: Unit) -> list[ForceColumn]:
     """The columns of a table with their meaning and factor to SI.
 
-    unit: gives the SI value of a unit.
+    unit: function that returns the SI value of a unit.
 
-    Raises: TableError.
+    Raises: TableError for unknown, missing or repeated columns, and for missing or conflicting
+    units.
     """
     out = []
     for meaning, index, sign in _chosen(grid, layout):
@@ -189,9 +193,9 @@ def _chosen(grid: TableGrid, layout: Layout) -> Iterator[tuple[str, int, float]]
 def _factor(
     grid: TableGrid, index: int, meaning: str, dimension: str, layout: Layout, unit: Unit
 ) -> float:
-    """The factor of a column to SI, of the unit in the study, in the row of units or in the header.
+    """The factor of a column to SI, from the unit in the study, the header or the row of units.
 
-    Raises: TableError where they disagree, or where there is none and no default.
+    Raises: TableError where these units disagree, or where there is neither a unit nor a default.
     """
     stated = layout.units.get(meaning) or layout.units.get(dimension, "")
     where = grid.source.file
@@ -233,7 +237,7 @@ def _factor(
 
 
 def _require_components(grid: TableGrid, columns: list[ForceColumn], layout: Layout) -> None:
-    """Raises: TableError unless every force has x and y components, each of a column of its own."""
+    """Raise TableError unless every component needed has one column, used for nothing else."""
     path = grid.source.file
     seen = [(c.connection, c.meaning) for c in columns]
     for key in seen:

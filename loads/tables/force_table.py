@@ -28,17 +28,18 @@ from loads.tables.open_table import open_table, rows_by_case
 from pinbase.arrays import Floats
 from pinbase.grouped import grouped
 
-OWN_TABLE_COLUMNS = {"case", "body"}  # a table with these columns is one of our own outputs
+OWN_TABLE_COLUMNS = {"case", "body"}  # a table with these columns is an output of this program
 
-Indices = Sequence[int] | None  # of rows; None: all
+Indices = Sequence[int] | None  # indices of rows; None for all rows
 
 
 @dataclass(frozen=True)
 class TabledForces:
     """The forces and moments of a table.
 
+    connections: (C,) names.
     times: (T,) s, ascending; None for one instant without a time. Where a time was given twice, for
-    the values before and after a jump, the second is the next larger number that is distinct.
+    the values before and after a jump, the second is larger by the least distinguishable step.
     values: (T, C, 6) fx, fy, fz in N, mx, my, mz in N m, in pin axes.
     """
 
@@ -48,7 +49,10 @@ class TabledForces:
 
 
 def table_cases(path: Path, layout: Layout) -> list[str]:
-    """The names in a table's column `case`, in their order. Raises: TableError."""
+    """The names in a table's column `case`, in their order.
+
+    Raises: TableError for a faulty table, without this column, or with a case without a name.
+    """
     at = layout.columns.get("case", "case")
     grid = open_table(path, layout.file_reading)
     index = column_index(grid, "case", at)
@@ -61,11 +65,11 @@ def table_cases(path: Path, layout: Layout) -> list[str]:
 def read_forces(path: Path, layout: Layout, unit: Unit, known: set[str]) -> TabledForces:
     """The forces in a table.
 
-    unit: gives the SI value of a unit.
-    known: connections of the study; others are an error, except in a table with labels or one that
-    this program wrote, where they are skipped.
+    unit: function that returns the SI value of a unit.
+    known: connections of the study. Other connections are an error, except in a table with labels
+    or a table that this program wrote, where they are skipped.
 
-    Raises: TableError; also where a connection has no row at one of the times.
+    Raises: TableError for a faulty table; also where a connection has no row at one of the times.
     """
     grid = open_table(path, layout.file_reading)
     columns = force_columns(grid, layout, unit)
@@ -108,7 +112,10 @@ def _rows_of_case(path: Path, grid: TableGrid, layout: Layout) -> Indices:
 def _by_connection(
     grid: TableGrid, columns: list[ForceColumn], rows: Indices, layout: Layout, known: set[str]
 ) -> dict[str, tuple[Indices, list[ForceColumn]]]:
-    """The rows of each connection and the columns of its components. Raises: TableError."""
+    """The rows of each connection and the columns of its components.
+
+    Raises: TableError for an unknown connection.
+    """
     first = 0 if rows is None else rows[0]
     at = next((c.index for c in columns if c.meaning == "connection"), None)
     every: dict[str, tuple[Indices, list[ForceColumn]]] = {}
@@ -136,7 +143,7 @@ def _by_connection(
 
 @dataclass(frozen=True)
 class _Forces:
-    """The numbers of a table of forces. time: SI value of the study's unit of time."""
+    """The numbers of a table of forces. time: SI value of the unit of time, for messages."""
 
     grid: TableGrid
     numbers: TableNumbers
@@ -182,12 +189,14 @@ class _Forces:
         return None
 
     def _require_events(self, name: str, times: Floats, rows: Sequence[int]) -> None:
-        """Raises: TableError where a time occurs more than twice, before and after a jump, or where
-        times go back, as in a file of several runs: sorted, they would be one between the other.
+        """Raise TableError unless times ascend, or descend throughout.
+
+        A time may occur twice, for the values before and after a jump, but not more often. Times
+        that go back in between may come from a file of several runs, which sorting would mix up.
         """
         step = np.diff(times)
         if (step < 0.0).all():
-            return  # the last first
+            return  # rows in descending order
         if (step < 0.0).any():
             k = int(np.argmax(step < 0.0))
             before, after = times[k : k + 2] / self.time
@@ -210,7 +219,7 @@ class _Forces:
         return TableError(f"{where}: connection {name} is given {what}", "duplicate-row")
 
     def require_same_times(self, names: Sequence[str], times: Sequence[Floats | None]) -> None:
-        """Raises: TableError where a connection has no row at a time of another."""
+        """Raise TableError where a connection has no row at a time of another connection."""
         for name, own in zip(names, times, strict=True):
             if own is times[0] or (
                 own is not None and times[0] is not None and np.array_equal(own, times[0])
@@ -227,7 +236,7 @@ class _Forces:
 def _first_difference(
     name: str, times: Floats | None, other: str, others: Floats | None
 ) -> tuple[float, str]:
-    """The first time at which one of two connections has a row less, and its name."""
+    """The first time at which one of two connections lacks a row, and the name of that one."""
     here, there = (list[float]() if t is None else t.tolist() for t in (times, others))
     for a, b in zip_longest(here, there, fillvalue=np.inf):
         if a != b:
@@ -241,13 +250,14 @@ def jump_times(times: Floats) -> Floats:
 
 
 def _least_step(times: Floats) -> float:
-    """The least difference, s, that numbers of the size of these times have."""
+    """The least distinguishable step, s, of floating-point numbers of the size of these times."""
     return float(np.spacing(max(1.0, float(np.abs(times).max()))))
 
 
 def _distinct(times: Floats | None) -> Floats | None:
-    """Times (T,) s, those after a jump larger by the least difference that numbers of this size
-    have, so that every instant has a time of its own.
+    """Times (T,) s, in which every instant has a time of its own.
+
+    The second of two equal times, after a jump, is larger by the least distinguishable step.
     """
     if times is None or np.diff(times).all():
         return times

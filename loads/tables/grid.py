@@ -1,4 +1,4 @@
-"""A table as columns of cells with their places, whatever kind of file it comes from."""
+"""A table as columns of cells with their places, for all kinds of files."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pinbase.arrays import Floats
 
 MAX_TABLE_ROWS = 250_000
 NUMBER_PATTERN = re.compile(r"[-+]?(?:\d[\d.,]*|[.,]\d+)(?:[eEdD][-+]?\d+)?|[-+]?(?i:nan|inf)")
-EMPTY_UNITS = "", "-", "--"  # of names and plain numbers, in a row of units
+EMPTY_UNITS = "", "-", "--"  # cells of a row of units above names and dimensionless numbers
 
 
 @dataclass(frozen=True)
 class Unreadable:
-    """A cell of a workbook with neither a number nor a text. what: it is, with the remedy."""
+    """A cell that cannot be read as a number or a text. what: the reason, with the remedy."""
 
     what: str
 
@@ -35,12 +35,12 @@ Decimal = Literal[".", ","]
 class FileReading:
     """The properties of a file that a study states because the file does not.
 
-    sheet: name of the sheet of a workbook; None: its only one.
-    header_line: line or row of the header, from 1; None: the first that is no comment.
-    separator, decimal: None: as the file shows.
-    encoding: of a text; None: UTF-8, or what its byte order mark says.
+    sheet: name of the sheet of a workbook; None for its only sheet.
+    header_line: line or row of the header, from 1; None for the first that is not a comment.
+    separator, decimal: separator of cells, and decimal sign; None if the file shows them.
+    encoding: encoding of a text; None for UTF-8, or the one that its byte order mark shows.
     numbered: whether columns are stated by number, so that no header is needed.
-    texts: headers and numbers of columns with names, even if these look like numbers.
+    texts: headers or numbers of columns of texts, even if these texts look like numbers.
     """
 
     sheet: str | None = None
@@ -54,10 +54,10 @@ class FileReading:
 
 @dataclass(frozen=True)
 class Source:
-    """A file and, of a workbook, its sheet, for messages.
+    """A file, and for a workbook its sheet, for messages.
 
-    workbook: whether it is one.
-    rows: whether its rows have numbers, not lines.
+    workbook: whether the file is a workbook.
+    rows: whether messages count rows instead of lines.
     """
 
     file: str
@@ -65,7 +65,7 @@ class Source:
     rows: bool = False
 
     def at(self, place: int, column: int | None = None) -> str:
-        """File and line, or the cell of a workbook. column: its index."""
+        """File and line, or the cell of a workbook. column: index of the column."""
         if self.workbook and column is not None:
             return f"{self.file}, cell {letters(column)}{place}"
         return f"{self.file}, {'row' if self.workbook or self.rows else 'line'} {place}"
@@ -73,12 +73,12 @@ class Source:
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows of a file that are no comments.
+    """The rows of a file that are not comments.
 
     places: lines, or rows of a workbook, from 1.
-    cells: of each row.
+    cells: cells of each row.
     comma: whether numbers may have a decimal comma.
-    heading: cells of the comment above the first row.
+    heading: cells of the comment above the first row, if it may be a header.
     separator: the character between the cells of a text.
     """
 
@@ -95,8 +95,8 @@ class TableGrid:
     """A table.
 
     names: headers of the columns; empty without a header.
-    units: texts of the row of units, empty where there are none.
-    unit_place: line of that row.
+    units: texts of the row of units, empty where a column has no unit.
+    unit_place: line of the row of units, or 0.
     columns: cells of each column.
     places: line of each row, or its row in a workbook.
     comma: whether numbers may have a decimal comma.
@@ -129,14 +129,14 @@ def letters(column: int) -> str:
 
 
 def is_number(cell: Cell) -> bool:
-    """Whether a cell has the form of a number, whatever its decimals."""
+    """Whether a cell has the form of a number, with any decimal sign."""
     if isinstance(cell, str):
         return NUMBER_PATTERN.fullmatch(cell.strip()[:MAX_SHOWN_CHARACTERS]) is not None
     return isinstance(cell, float)
 
 
 def text_of(cell: object) -> str:
-    """The text of a cell; 12.0 of a workbook is 12."""
+    """The text of a cell; a workbook's number 12.0 becomes 12."""
     if isinstance(cell, float) and cell.is_integer():
         return str(int(cell))
     return str(cell).strip()
@@ -147,7 +147,7 @@ def grid_of(rows: Rows, numbered: bool) -> TableGrid:
 
     numbered: whether the study states columns by number, so that the table needs no header.
 
-    Raises: TableError for rows of different length, or none.
+    Raises: TableError for rows of different length, too many rows or columns, or no rows.
     """
     source, places, cells = rows.source, rows.places, rows.cells
     first = cells[0] if cells else ()
@@ -187,15 +187,16 @@ def grid_of(rows: Rows, numbered: bool) -> TableGrid:
 
 
 def _require_cells(where: str, cells: Sequence[Cell], width: int) -> None:
-    """Raises: TableError for a row that is longer or shorter than the header, but for an empty
-    cell after a last separator.
+    """Raise TableError for a row that is longer or shorter than the header.
+
+    An empty cell after a last separator is allowed.
     """
     if len(cells) != width and not (len(cells) == width + 1 and cells[-1] == ""):
         raise cell_count(where, cells, width)
 
 
 def bare_unit(cell: Cell) -> str:
-    """The unit in a cell, without brackets; empty where it has none."""
+    """The unit in a cell, without brackets; empty where the cell has none."""
     text = " ".join(str(cell).split())
     if len(text) > 1 and (text[0], text[-1]) in (("[", "]"), ("(", ")")):
         text = text[1:-1].strip()
@@ -203,8 +204,8 @@ def bare_unit(cell: Cell) -> str:
 
 
 def unique_names(grid: TableGrid) -> None:
-    """Raises: TableError for a table in which two columns have the same name."""
-    unused = empty_columns(grid)  # such as those left of a table that does not begin in column A
+    """Raise TableError for a table in which two columns have the same name."""
+    unused = empty_columns(grid)  # for instance to the left of a table that begins in column C
     names = [name for k, name in enumerate(grid.names) if k not in unused]
     for k, name in enumerate(names):
         if name in names[:k]:
@@ -222,7 +223,7 @@ def unique_names(grid: TableGrid) -> None:
 
 
 def empty_columns(grid: TableGrid) -> frozenset[int]:
-    """Columns without a name and without a cell that is not empty."""
+    """Indices of the columns without a name whose cells are all empty."""
     return frozenset(
         k
         for k, name in enumerate(grid.names)

@@ -1,4 +1,4 @@
-"""Numbers from the cells of a table; what could be read in two ways is refused."""
+"""Numbers from the cells of a table; ambiguous numbers are refused."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from loads.tables.grid import Cell, Column, Decimal, TableGrid, Unreadable
 from pinbase.arrays import Floats
 
 FORTRAN_PATTERN = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))[dD]([-+]?\d+)")
-# Groups of three digits: with one comma a decimal part as well.
+# Groups of three digits; a number with a single comma may also be a decimal fraction.
 COMMA_GROUPS_PATTERN = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?")
 POINT_GROUPS_PATTERN = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+(?:,\d*)?")
 
@@ -29,8 +29,8 @@ class TableNumbers:
     """The numbers of a table, in its units.
 
     grid: the table.
-    columns: indices of all columns with numbers, which together tell the decimal sign.
-    decimal: the decimal sign that the study states.
+    columns: indices of all columns with numbers, which together show the decimal sign.
+    decimal: decimal sign that the study states, or None.
     """
 
     def __init__(self, grid: TableGrid, columns: Sequence[int], decimal: Decimal | None) -> None:
@@ -39,7 +39,7 @@ class TableNumbers:
     def column(self, index: int, rows: Sequence[int] | None) -> Floats:
         """The numbers of a column, (R,).
 
-        rows: indices of the R rows; None: all.
+        rows: indices of the R rows; None for all rows.
 
         Raises: TableError for a cell that is not a finite number.
         """
@@ -59,7 +59,7 @@ class TableNumbers:
     def _values(self, cells: Sequence[Cell], index: int, rows: Sequence[int] | None) -> Floats:
         text = _joined(cells)
         mixed = "." in text and (self.decimal == "," or self._has_commas)
-        if text and not mixed:  # all at once, as a table may have a million cells
+        if text and not mixed:  # convert all cells at once, as a table may have a million
             if "," in text and self._commas_settled:
                 cells = [cell.replace(",", ".") for cell in cells]  # type: ignore[union-attr]
             try:
@@ -81,8 +81,10 @@ class TableNumbers:
 
     @cached_property
     def _commas_settled(self) -> bool:
-        """Whether all commas are decimal signs: as stated, or in a table without points in which
-        some comma cannot separate thousands, as in 0,5 or 12,34.
+        """Whether all commas are decimal signs.
+
+        They are if the study says so, or in a table without points in which some comma cannot
+        separate thousands, as in 0,5 or 12,34.
         """
         if self.decimal is not None or not self._has_commas:
             return self.decimal == "," and self.grid.comma
@@ -96,7 +98,7 @@ class TableNumbers:
         )
 
     def _cell(self, row: int, index: int, cell: Cell) -> float:
-        """The number in a cell. Raises: TableError."""
+        """The number in a cell. Raises: TableError for any other cell."""
         if isinstance(cell, float):
             return cell
         what = f"{self.grid.where(row, index)}: {self.grid.name(index)}"
@@ -118,7 +120,7 @@ class TableNumbers:
     def _with_point(self, what: str, text: str) -> str:
         """The text of a number with a decimal point and without groups of thousands.
 
-        Raises: TableError where the sign in it may be either.
+        Raises: TableError where a comma or point may be a decimal sign or separate thousands.
         """
         short = text[:MAX_SHOWN_CHARACTERS]
         by_commas = COMMA_GROUPS_PATTERN.fullmatch(short)
@@ -148,7 +150,7 @@ class TableNumbers:
         return text.replace(",", ".") if single else text
 
     def _require_value(self, row: int, index: int, value: float) -> None:
-        """Raises: TableError for a number that is not finite, or too large."""
+        """Raise TableError for a number that is not finite, or too large."""
         what = f"{self.grid.where(row, index)}: {self.grid.name(index)}"
         cell = self.grid.columns[index][row]
         shown = cell.strip()[:MAX_SHOWN_CHARACTERS] if isinstance(cell, str) else f"{value:g}"
@@ -165,11 +167,13 @@ def shows_decimal_comma(text: str) -> bool:
 
 
 def _joined(cells: Column) -> str:
-    """All cells in one text; empty unless they are texts of ASCII characters without underscores,
-    which Python's numbers may have.
+    """All cells in one text.
+
+    It is empty unless all cells are texts of ASCII characters without underscores: Python would
+    accept other digits and underscores in numbers.
     """
     try:
         text = "".join(cells)  # type: ignore[arg-type]
-    except TypeError:  # of a workbook
+    except TypeError:  # cells of a workbook may be numbers
         return ""
     return text if text.isascii() and "_" not in text else ""

@@ -1,4 +1,4 @@
-"""Opening a table of any kind of file that other programs write."""
+"""Opening of tables in all supported kinds of files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from loads.tables.text_grid import text_grid
 from loads.tables.text_rows import text_lines
 from pinbase.grouped import grouped
 
-# The beginning of files that are no texts.
+# The first bytes of files that are not texts.
 ZIP_MARK, PARQUET_MARK = b"PK\x03\x04", b"PAR1"
 OTHER_MARKS = {
     b"\xd0\xcf\x11\xe0": "is a workbook of an old kind (.xls); save it as .xlsx",
@@ -35,7 +35,7 @@ NO_NUMBER = Unreadable("is neither a number nor a text")
 
 
 def open_table(path: Path, reading: FileReading) -> TableGrid:
-    """The table in a file: text, a workbook (.xlsx) or Parquet, as its first bytes tell.
+    """The table in a file: a text, a workbook (.xlsx) or Parquet, which its first bytes show.
 
     Raises: TableError for a file that is not a table.
     """
@@ -47,11 +47,11 @@ def rows_by_case(path: Path, reading: FileReading, column: int) -> dict[str, lis
     return _by_case(path, stamp(path), reading, column)
 
 
-@lru_cache(maxsize=1)  # the cases of one table follow each other
+@lru_cache(maxsize=1)  # the cases of one table are read one after the other
 def _open(path: Path, _: str, reading: FileReading) -> TableGrid:
-    """Open a table as open_table does.
+    """The table in a file, as for `open_table`.
 
-    _: the stamp of the file, which makes the cache notice a changed one.
+    _: stamp of the file, by which the cache notices that the file has changed.
     """
     content, source = read_content(path), Source(str(path))
     for mark, what in OTHER_MARKS.items():
@@ -75,7 +75,7 @@ def _by_case(path: Path, _: str, reading: FileReading, column: int) -> dict[str,
 
 
 def parquet_grid(source: Source, content: bytes) -> TableGrid:
-    """The table in a Parquet file. Raises: TableError for a file that is none."""
+    """The table in a Parquet file. Raises: TableError for a file that is not a Parquet table."""
     import pyarrow as pa
     from pyarrow import parquet
 
@@ -103,7 +103,7 @@ def parquet_grid(source: Source, content: bytes) -> TableGrid:
 
 
 def _cells(column: Any) -> Any:
-    """The cells of a column; its numbers as an array if none is missing."""
+    """The cells of a column; an array if all of them are numbers."""
     import pyarrow.types as kinds
 
     kind = column.type

@@ -1,7 +1,8 @@
-"""The last rows of a workbook's sheet in which every cell is a number, all at once.
+"""Fast reading of the last rows of a workbook's sheet, in which every cell is a number.
 
-Most of a long table is such rows, which are the same but for their digits. That is compared as a
-whole, and the numbers are read as a whole, so that 1,400,000 cells need no event of XML each.
+Most of a long table consists of such rows, whose XML differs only in the digits. This is checked
+for all rows at once, and the numbers are read at once, so that 1,400,000 cells do not need an XML
+event each.
 """
 
 from __future__ import annotations
@@ -13,15 +14,15 @@ from io import BytesIO
 import numpy as np
 from numpy.typing import NDArray
 
-MIN_PLAIN_ROWS = 64  # fewer are read as any others
-MAX_OTHER_ROWS = 10_000  # before them
+MIN_PLAIN_ROWS = 64  # fewer rows of numbers are read like other rows
+MAX_OTHER_ROWS = 10_000  # largest number of other rows above the rows of numbers
 WITHOUT_NUMBERS = re.compile(
     rb'<row r=""(?: [A-Za-vx-z:]+="[a-z:]*")*>'
     rb'(?:<c r="[A-Z]{1,3}"(?: s="")?(?: t="n")?><v></v></c>)+</row>'
 )
 CELL_PATTERN = re.compile(rb'<c r="([A-Z]{1,3})(")( s=")?')
 SIGNS = b"0123456789.-+"
-# Of XML to lines of fields: quotes and colons end a field, and a w of `row` ends a line.
+# From XML to lines of fields: quotes and colons end a field, and the w of `row` ends a line.
 TO_FIELDS = bytes.maketrans(b'":w', b",,\n")
 WITHOUT_FIELDS = bytes(c for c in range(256) if c not in SIGNS + b'eE":w')
 
@@ -30,8 +31,10 @@ WITHOUT_FIELDS = bytes(c for c in range(256) if c not in SIGNS + b'eE":w')
 class PlainRows:
     """Rows of numbers.
 
-    places: (R,) rows of the sheet, from 1. columns: (K,) their letters. values: (R, K).
-    styles: (K,) numbers of the styles of the columns in any row; empty without.
+    places: (R,) rows of the sheet, from 1.
+    columns: (K,) letters of the columns.
+    values: (R, K) numbers.
+    styles: (K,) numbers of all styles in each column; empty where cells have no style.
     """
 
     places: NDArray[np.int64]
@@ -41,17 +44,21 @@ class PlainRows:
 
 
 def split(content: bytes) -> tuple[bytes, PlainRows | None]:
-    """The XML of a sheet without its last rows of numbers, and these; None if there are too few."""
+    """The XML of a sheet without its last rows of numbers, and these rows.
+
+    With too few rows of numbers, the whole XML and None.
+    """
     end = content.rfind(b"</row>") + len(b"</row>")
     start = content.find(b"<row ")
     last = content.rfind(b"<row ", 0, end)
     if not 0 <= start <= last < end:
         return content, None
+    # Without their digits, the last rows of numbers are repetitions of the skeleton of one row.
     skeleton, row = (_skeleton(content[a:end]) for a in (start, last))
     count = skeleton.count(row)
     if count < MIN_PLAIN_ROWS or not WITHOUT_NUMBERS.fullmatch(row):
         return content, None
-    while not skeleton.endswith(row * count):  # other rows stand between them
+    while not skeleton.endswith(row * count):  # other rows are in between
         count = _repeated(skeleton, row)
     others = content.count(b"<row ", start, end) - count
     if count < MIN_PLAIN_ROWS or others > MAX_OTHER_ROWS:
@@ -71,7 +78,7 @@ def _skeleton(text: bytes) -> bytes:
 
 
 def _repeated(skeleton: bytes, row: bytes) -> int:
-    """Return how often a row stands at the end."""
+    """The number of repetitions of a row at the end."""
     count, end = 0, len(skeleton)
     while skeleton.endswith(row, 0, end):
         count, end = count + 1, end - len(row)
@@ -79,14 +86,17 @@ def _repeated(skeleton: bytes, row: bytes) -> int:
 
 
 def _rows(text: bytes, row: bytes, count: int) -> PlainRows | None:
-    """The numbers of rows; None where they are not what the skeleton says."""
+    """The numbers of rows; None where the rows do not have the form of the skeleton.
+
+    text: XML of the rows. row: skeleton of each row. count: number of rows.
+    """
     import pyarrow as pa
     from pyarrow import csv
 
     cells = list(CELL_PATTERN.finditer(row))
     names = [cell[1] for cell in cells]
     for name in sorted((name for name in names if b"E" in name), key=len, reverse=True):
-        text = text.replace(b'<c r="' + name, b'<c r="')  # else like an exponent
+        text = text.replace(b'<c r="' + name, b'<c r="')  # its E would look like an exponent
     text = text.translate(TO_FIELDS, WITHOUT_FIELDS)
 
     def field(end: int) -> str:

@@ -1,6 +1,6 @@
-"""Reading of files that a user names: only regular files, up to a size.
+"""Reading of files that a user names, only if regular and up to a limited size.
 
-A pipe would block, a device has no end, and a far too large file is not a study or table.
+A pipe would block, a device has no end, and a file that is far too large is not a study or table.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from loads.tables.sent_files import content_sent
 from pinbase.errors import CodedError
 
 MB = 2**20
-# So that opening does not wait and no byte is converted, on systems that have these flags.
+# Flags (on systems that have them) so that opening does not wait and no bytes are converted.
 OPEN_FLAG_NAMES = "O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY", "O_NOINHERIT"
 READ_FLAGS = os.O_RDONLY | sum(getattr(os, name, 0) for name in OPEN_FLAG_NAMES)
 
@@ -27,34 +27,34 @@ class FileError(CodedError, ValueError):
 def read_regular(path: Path, max_bytes: int) -> bytes:
     """The content of a regular file of at most `max_bytes`.
 
-    Raises: FileError, FileNotFoundError.
+    Raises: FileError for a file that must not or cannot be read; FileNotFoundError.
     """
     sent = content_sent(path)
     if sent is not None:
         _require_size(len(sent), max_bytes)
         return sent
-    require_regular(path, max_bytes)  # before it is opened: opening alone starts some devices
+    require_regular(path, max_bytes)  # before opening, which alone starts some devices
     with _plain_reasons(), open(os.open(path, READ_FLAGS), "rb") as file:
-        _require_status(os.fstat(file.fileno()), max_bytes)  # it may be another file by now
+        _require_status(os.fstat(file.fileno()), max_bytes)  # the file may have been replaced
         content = file.read(max_bytes + 1)
-    _require_size(len(content), max_bytes)  # it may be growing, or report no size
+    _require_size(len(content), max_bytes)  # the file may be growing, or report no size
     return content
 
 
 def require_regular(path: Path, max_bytes: int) -> None:
-    """Raises: FileError for a file that is not regular or has more bytes; FileNotFoundError."""
+    """Raise FileError for a file that is not regular or has more bytes; or FileNotFoundError."""
     with _plain_reasons():
         _require_status(os.stat(path), max_bytes)
 
 
 @contextmanager
 def _plain_reasons() -> Iterator[None]:
-    """Turn errors of the system into FileErrors without its number of the error and the path."""
+    """Turn errors of the system into FileErrors without the error's number and the path."""
     try:
         yield
     except (FileError, FileNotFoundError):
         raise
-    except (OSError, ValueError) as error:  # ValueError: no file's name
+    except (OSError, ValueError) as error:  # ValueError: not a valid file name
         why = error.strerror if isinstance(error, OSError) else error
         raise FileError(f"cannot be read ({why})", "unreadable") from None
 

@@ -1,6 +1,6 @@
 """Files whose contents were sent from another computer.
 
-They are read instead of the files at the same paths on this one, which may differ.
+They are read instead of the files at the same paths on this computer, which may differ.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _noted: ContextVar[set[Path] | None] = ContextVar("_noted", default=None)
 
 @contextmanager
 def noted_files() -> Iterator[set[Path]]:
-    """Collects the paths of the files that this thread reads inside the `with` block."""
+    """Collect the paths of the files that this thread reads inside the `with` block."""
     paths = set[Path]()
     token = _noted.set(paths)
     try:
@@ -32,7 +32,7 @@ def noted_files() -> Iterator[set[Path]]:
 
 @contextmanager
 def sent_files(contents: Mapping[str, bytes]) -> Iterator[None]:
-    """Inside the `with` block, this thread reads these files only. contents: by path."""
+    """Let this thread read only these files inside the `with` block. contents: by path."""
     token = _sent.set(contents)
     try:
         yield
@@ -56,12 +56,16 @@ def content_sent(path: Path) -> bytes | None:
 
 
 def stamp(path: Path) -> str:
-    """A text that changes when a file's content does; empty where there is no file."""
+    """A text that changes when a file's content changes; empty where there is no file."""
     try:
         content = content_sent(path)
         if content is not None:
             return hashlib.sha256(content).hexdigest()
-        return str(path.stat().st_mtime_ns) if os.path.isfile(path) else ""
+        if not os.path.isfile(path):
+            return ""
+        # A copy that keeps its time, or a second write within a tick of the clock, changes others.
+        about = path.stat()
+        return f"{about.st_mtime_ns} {about.st_ctime_ns} {about.st_size} {about.st_ino}"
     except FileNotFoundError:
         return ""
 

@@ -1,4 +1,4 @@
-"""The table in a text: one of numbers alone at once, any other cell by cell."""
+"""The table in a text, in which long tables of numbers are read at once, others cell by cell."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from loads.tables.numbers import shows_decimal_comma
 from loads.tables.text_rows import has_cells, text_rows
 from pinbase.arrays import Floats
 
-HEAD_LINES = 200  # from which the form of a long table is read
-MIN_BLOCK_LINES = 1000  # of a table that is read at once; shorter ones take milliseconds anyway
+HEAD_LINES = 200  # first lines of a long table, from which its form is determined
+MIN_BLOCK_LINES = 1000  # least lines of a table that is read at once; others take milliseconds
 
 
 def text_grid(source: Source, lines: list[str], reading: FileReading) -> TableGrid:
@@ -34,13 +34,11 @@ def text_grid(source: Source, lines: list[str], reading: FileReading) -> TableGr
 
 
 def _of_numbers(source: Source, lines: list[str], reading: FileReading) -> TableGrid | None:
-    """The table if its columns are of numbers in one form, without a doubt, or of texts;
-    otherwise None.
-    """
+    """The table if each column has only texts, or only unambiguous numbers; otherwise None."""
     try:
         head = text_rows(source, lines[:HEAD_LINES], reading)
         grid = grid_of(head, reading.numbered)
-    except TableError:  # or the first lines are not enough
+    except TableError:  # perhaps only because the first lines are not enough
         return None
     end = len(lines)
     while not lines[end - 1].strip():
@@ -66,13 +64,13 @@ def _of_numbers(source: Source, lines: list[str], reading: FileReading) -> Table
     if columns is None or values is None or values.shape != (len(places), len(rest)):
         return None
     if not (np.abs(values) <= MAX_CELL_VALUE).all():
-        return None  # the reader of cells reports where
+        return None  # the reader of single cells reports the place
     columns |= {k: np.ascontiguousarray(column) for k, column in zip(rest, values.T, strict=True)}
     return replace(grid, columns=tuple(columns[k] for k in sorted(columns)), places=places)
 
 
 def _has_texts(grid: TableGrid, column: int, reading: FileReading) -> bool:
-    """Whether a column has texts: by its meaning, or as its first cells show."""
+    """Whether a column has texts, by its meaning or by its first cells."""
     name = grid.names[column] if grid.names else ""
     return (
         name in reading.texts
@@ -104,9 +102,10 @@ def _all(rows: list[list[str]], width: int) -> bool:
 
 
 def _numbers(text: str, separator: str, columns: list[int] | None) -> Floats | None:
-    """The numbers of some columns, (R, C); None where a cell is none, or a row has another length.
+    """The numbers of some columns, (R, C).
 
-    columns: None: all.
+    None where a cell is not a number, or rows differ in length.
+    columns: indices of the columns; None for all columns.
     """
     delimiter = None if separator == " " else separator
     lines = text.split("\n")

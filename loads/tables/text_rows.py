@@ -1,4 +1,4 @@
-"""The rows of a text table: its encoding, comments and separators."""
+"""The rows of a text table, from its encoding, comments and separators."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loads.tables.grid import Cell, FileReading, Rows, Source, is_number
 COMMENT_MARKS = "#", "%", "//", "!"
 MARKS_PATTERN = re.compile(r"\s*(?:[#%!]+|//+)\s*")
 SEPARATOR_CHARACTERS = {",": ",", ";": ";", "tab": "\t", "blank": " "}
-ENCODINGS_BY_MARK = (  # the longer ones first: a mark of UTF-32 begins with one of UTF-16
+ENCODINGS_BY_MARK = (  # longer marks first: a mark of UTF-32 begins with one of UTF-16
     (codecs.BOM_UTF32_LE, "utf-32"),
     (codecs.BOM_UTF32_BE, "utf-32"),
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -85,14 +85,14 @@ def has_cells(line: str) -> bool:
 
 
 def _separator(line: str, reading: FileReading) -> str:
-    """The character that separates the cells of the first line."""
+    """The character that separates the cells: as the study states, or as a line shows."""
     if reading.separator is not None:
         return SEPARATOR_CHARACTERS[reading.separator]
     for separator in (";", "\t"):
         if separator in line:
             return separator
     words = line.split()
-    # 0,5 1,5 is two numbers with decimal commas: a comma separates nothing there.
+    # "0,5 1,5" is two numbers with decimal commas, in which commas are not separators.
     numbers = all(is_number(word) and "," not in (word[0], word[-1]) for word in words)
     return "," if "," in line and not (len(words) > 1 and numbers) else " "
 
@@ -100,7 +100,7 @@ def _separator(line: str, reading: FileReading) -> str:
 def _separated(
     lines: list[str], before: int, separator: str
 ) -> tuple[list[int], list[Sequence[Cell]]]:
-    """The lines and cells of rows. before: the number of lines before these."""
+    """The lines and cells of rows. before: number of lines above these."""
     reader = csv.reader(lines, skipinitialspace=True, delimiter=separator)
     places, rows = list[int](), list[Sequence[Cell]]()
     for cells in reader:
@@ -116,12 +116,12 @@ def _separated(
 def _blank_separated(
     source: Source, lines: list[str], before: int, numbered: bool
 ) -> tuple[list[int], list[Sequence[Cell]]]:
-    """The lines and cells of rows.
+    """The lines and cells of rows separated by blanks.
 
-    before: the number of lines before these.
+    before: number of lines above these.
     numbered: whether the names of the columns do not matter.
 
-    Raises: TableError for a header with another number of names than the rows have cells.
+    Raises: TableError for a header whose number of names differs from the number of cells.
     """
     places = [before + k for k, line in enumerate(lines, 1) if line]
     full = [line for line in lines if line]
@@ -146,16 +146,16 @@ def _blank_separated(
 
 
 def _words(line: str) -> list[str]:
-    """The words of a line; those in quotes or brackets stay together."""
+    """The words of a line; words in quotes or brackets stay together."""
     return [word.strip('"').strip() for word in WORD_PATTERN.findall(line)]
 
 
 def _heading(
     lines: list[str], separator: str, width: int, marked: bool = True
 ) -> Sequence[Cell] | None:
-    """The cells of the last line if it has as many as the rows; None if not.
+    """The cells of the last of some lines if it has as many as the rows; otherwise None.
 
-    marked: whether it is a comment.
+    width: number of cells of a row. marked: whether the line is a comment.
     """
     if not lines:
         return None
@@ -164,13 +164,13 @@ def _heading(
 
 
 def _ways(line: str, separator: str) -> Iterator[list[str]]:
-    """The ways of reading a header, the likely ones first."""
+    """The possible cells of a header, the most likely first."""
     if separator != " ":
         yield [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
         return
     words = _words(line)
     yield words
-    merged = list[str]()  # Time (s) is one name, with its unit
+    merged = list[str]()  # "Time (s)" is one name, with its unit
     for word in words:
         if merged and BRACKETED_PATTERN.fullmatch(word):
             merged[-1] += f" {word}"

@@ -1,9 +1,9 @@
 """The rows of a sheet of a workbook (.xlsx), as they are stored.
 
-Only values count: a formula's stored value may be old, or 0 where a program never computed it, so
-formulas are refused; likewise dates, which are numbers of days with a format, numbers that a format
-shows with a unit or in per cent, and merged cells, of which all but one are empty. The format is
-that of ECMA-376, part 1, clause 18.
+Only plain values are accepted. Formulas are refused, because the stored value may be old, or 0
+where a program never computed it. Dates are refused, because they are numbers of days with a
+format; so are numbers that a format shows with a unit or in per cent, and merged cells, of which
+all but one are empty. The file format is that of ECMA-376, part 1, clause 18.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ from loads.tables.plain_rows import PlainRows, split
 from loads.tables.regular_file import MB
 from loads.tables.text_rows import COMMENT_MARKS
 
-MAX_PART_BYTES = 256 * MB  # of a workbook, unpacked: a sheet of 200,000 rows and 7 columns has 60
-MAX_SHEET_ROWS = 1_048_576  # of a sheet, by the format
+MAX_PART_BYTES = 256 * MB  # of an unpacked part; a sheet of 200,000 rows and 7 columns has 60 MB
+MAX_SHEET_ROWS = 1_048_576  # rows of a sheet, by the format
 MAX_SHEET_CELLS = 10_000_000
 MAX_SHOWN_SHEETS = 20
 REFERENCE_PATTERN = re.compile(r"([A-Z]{1,3})(\d{1,7})")
@@ -60,7 +60,7 @@ class _NotAWorkbook(Exception):
 
 
 def workbook_grid(file: str, content: bytes, reading: FileReading) -> TableGrid:
-    """The table in a sheet of a workbook. Raises: TableError for a file that is none."""
+    """The table in a sheet of a workbook. Raises: TableError for a file that is not one."""
     try:
         with zipfile.ZipFile(BytesIO(content)) as archive:
             book = _Book(archive)
@@ -85,7 +85,7 @@ def workbook_grid(file: str, content: bytes, reading: FileReading) -> TableGrid:
 
 
 def _sheet_name(file: str, sheets: Mapping[str, str], wanted: str | None) -> str:
-    """The name of the sheet to read. Raises: TableError where it is not clear which."""
+    """The name of the sheet to read. Raises: TableError where it is missing or must be stated."""
     names = ", ".join(map(repr, list(sheets)[:MAX_SHOWN_SHEETS]))
     if wanted is None and len(sheets) > 1:
         raise TableError(
@@ -118,7 +118,10 @@ Start = Callable[[str, Attributes], None]
 def _parse(
     content: bytes, start: Start, end: Callable[[str], None], text: Callable[[str], None]
 ) -> None:
-    """Read XML; names come without their namespace. Raises: _NotAWorkbook, ExpatError."""
+    """Parse XML and pass on its events; names come without their namespace.
+
+    Raises: _NotAWorkbook where it declares a document type; ExpatError.
+    """
 
     def refuse(*_: object) -> None:
         raise _NotAWorkbook("it declares a document type")
@@ -140,7 +143,7 @@ def _elements(content: bytes) -> list[tuple[str, Attributes]]:
 
 
 class _Book:
-    """The parts of a workbook. sheets: their paths in the archive by name."""
+    """The parts of a workbook. sheets: path of each sheet in the archive, by its name."""
 
     def __init__(self, archive: zipfile.ZipFile) -> None:
         self.archive = archive
@@ -160,7 +163,7 @@ class _Book:
                 self.sheets[values.get("name", "")] = _path(relations[key].get("Target", ""))
 
     def texts(self) -> list[str]:
-        """The texts that cells refer to by number."""
+        """The shared texts, to which cells refer by number."""
         path = self.kinds.get("sharedStrings")
         out, part = list[str](), _Texts()
         if path is not None:
@@ -168,7 +171,7 @@ class _Book:
         return out
 
     def refused_styles(self) -> dict[int, Unreadable]:
-        """The numbers of the cell styles whose numbers do not mean what the cell shows."""
+        """The reason for refusal, by number of cell style, where a cell shows another number."""
         path = self.kinds.get("styles")
         if path is None:
             return {}
@@ -188,9 +191,9 @@ class _Book:
 
 
 def _refused_format(code: str) -> Unreadable | None:
-    """The reason why a number with this format is not what its cell shows; None if it is.
+    """The reason why a cell with this format does not show its number; None if it does.
 
-    A unit that only the format shows would be lost: 2 shown as 2 kN would be 2 N.
+    A unit that only the format shows would be lost: 2, shown as 2 kN, would become 2 N.
     """
     bare = NO_DATE_PATTERN.sub("", code)
     if set(bare.lower()) & set("dmyhs"):
@@ -213,7 +216,7 @@ def _path(target: str) -> str:
 
 @dataclass
 class _Texts:
-    """A reader of shared texts, which may be in pieces of different style."""
+    """A reader of shared texts, which may consist of pieces of different style."""
 
     pieces: list[str] = field(default_factory=list)
     inside: bool = False
@@ -244,8 +247,8 @@ class _Sheet:
     """A reader of a sheet.
 
     texts: shared texts.
-    refused: styles whose numbers are not what their cells show, by number.
-    first: the first row that counts, from 1.
+    refused: reasons for refusal by number of style (`_Book.refused_styles`).
+    first: first row that is read, from 1.
     """
 
     def __init__(self, texts: list[str], refused: Mapping[int, Unreadable], first: int) -> None:
@@ -267,14 +270,14 @@ class _Sheet:
         _parse(content, self._start, self._end, self._text)
 
     def _takes(self, plain: PlainRows) -> bool:
-        """Whether rows of numbers need none of the rules for other cells."""
+        """Whether rows of numbers can be taken as they are: in range, and of no refused style."""
         refused = any(not styles.isdisjoint(self.refused) for styles in plain.styles)
         columns = list(map(_index, plain.columns))
         inside = max(columns) < MAX_COLUMNS and plain.places[-1] <= MAX_SHEET_ROWS
         return inside and not refused and int(plain.places[0]) >= self.first
 
     def grid(self, source: Source, reading: FileReading) -> TableGrid:
-        """The table. Raises: TableError."""
+        """The table. Raises: TableError for a sheet that is not a table, or is too large."""
         plain = self.plain
         columns = [] if plain is None else list(map(_index, plain.columns))
         count = len(self.cells) + (0 if plain is None else len(plain.places))
@@ -291,7 +294,8 @@ class _Sheet:
         blank = [""] * len(plain.places)
         body: list[Column] = [numbers.get(k, blank) for k in range(width)]
         head = grid_of(self._rows(source, reading, width, plain.places[:2], body), reading.numbered)
-        if len(head.places) == 2 and len(plain.places) <= MAX_TABLE_ROWS:  # all others are above
+        # Two rows of data in the head: all rows above the rows of numbers belong to the header.
+        if len(head.places) == 2 and len(plain.places) <= MAX_TABLE_ROWS:
             return replace(head, columns=tuple(body), places=plain.places.tolist())
         return grid_of(self._rows(source, reading, width, plain.places, body), reading.numbered)
 
@@ -303,10 +307,11 @@ class _Sheet:
         places: Sequence[int] | NDArray[np.int64] = (),
         body: Sequence[Column] = (),
     ) -> Rows:
-        """The rows with cells that are no comments, and below them the first of the rows of
-        numbers.
+        """The rows that are not comments, and below them the first of the rows of numbers.
 
-        places: of these. body: all columns of numbers.
+        width: number of cells of a row.
+        places: rows of the sheet of these first rows of numbers.
+        body: cells of all rows of numbers, by column.
         """
         out, rows = list[int](), list[Sequence[Cell]]()
         for place in sorted(self.cells):
@@ -362,7 +367,7 @@ class _Sheet:
             self.pieces.append(text)
 
     def _value(self, text: str) -> Cell:
-        """The value of a cell with this content."""
+        """The value of a cell from the text that it contains."""
         if self.formula:
             return FORMULA
         if self.kind == "n":
@@ -379,7 +384,7 @@ class _Sheet:
         return Unreadable(f"is an error value, {text[:20]}")
 
     def _merge(self, reference: str) -> None:
-        """Note merged cells, unless they are above the table."""
+        """Record merged cells, unless they are above the table."""
         last = REFERENCE_PATTERN.fullmatch(reference.rpartition(":")[2])
         if last is None or int(last[2]) >= self.first:
             self.merged = reference

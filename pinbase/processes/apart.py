@@ -1,5 +1,5 @@
-"""Run engines that may take their process with them (V8 of Vega, typst, VTK) in processes of their
-own, so that a crash costs that piece of work alone.
+"""Run engines that may crash their process (V8 of Vega, typst, VTK) in processes of their own, so
+that a crash costs only that piece of work.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ class _Made(Generic[T]):
 def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T | Failed]:
     """Run functions in processes of their own and return their results or failures.
 
-    work: names for messages, and functions; these must pickle where processes are started anew.
-    Anything that they print is dropped.
-    seconds: processor time that each function may take, s; one that hangs would take all of it.
+    work: names for messages, and functions. Functions must pickle where processes are started
+    anew. Anything that they print is dropped.
+    seconds: processor time that each function may take, s; a function that hangs takes all of it.
 
-    Raises: KeyboardInterrupt.
+    Raises: KeyboardInterrupt at an interrupt.
     """
     limits = Limits(seconds)
     return guarded([Job(name, partial(_untold, function), limits) for name, function in work])
@@ -52,15 +52,15 @@ def apart(work: Sequence[tuple[str, Callable[[], T]]], seconds: int) -> list[T |
 def guarded(
     jobs: Sequence[Job[T]], anew: bool = False, watch: Watch | None = None
 ) -> list[T | Failed]:
-    """Run jobs, which may report progress, as `apart` runs functions.
+    """Run jobs, which may report progress, in the way in which `apart` runs functions.
 
-    anew, watch: as in `in_parallel`.
+    anew, watch: as for `in_parallel`.
     """
     inner: list[Job[_Made[T] | Failed]] = [
         Job(job.name, partial(_guarded, job.work), job.limits) for job in jobs
     ]
     try:
-        # Two at a time: one would be this process.
+        # Two at a time, because with one at a time jobs would run in this process.
         outcomes = in_parallel(inner, 2, anew=anew or not can_fork(), watch=watch)
     except (OSError, MemoryError) as error:  # no further process can be started
         why = NO_MEMORY_REASON if isinstance(error, MemoryError) else str(error.strerror)
@@ -95,13 +95,13 @@ def _guarded(work: Callable[[Tell], T], tell: Tell) -> _Made[T] | Failed:
         return Failed(NO_MEMORY_REASON)
     except Damaged as error:
         return Failed(str(error), damaged=True)
-    except BaseException as error:  # also a panic of Rust, which is no Exception
+    except BaseException as error:  # also a panic of Rust, which is not an Exception
         return Failed(_first_line(error))
 
 
 def _first_line(error: BaseException) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    if lines and lines[0].endswith(":"):  # of vl-convert, which says below what is wrong
+    if lines and lines[0].endswith(":"):  # vl-convert states the reason in the next line
         lines[:2] = [" ".join(lines[:2])]
     said = isinstance(error, ArithmeticError | ValueError | RuntimeError | OSError) and bool(lines)
     return lines[0] if said else ": ".join([type(error).__name__, *lines[:1]])

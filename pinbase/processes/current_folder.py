@@ -1,8 +1,8 @@
 """Keep Python from importing or running anything from the user's current folder.
 
-A `pyvista.py` in a study's folder is no library of ours. Python itself puts that folder first with
-`-m` and `-c`, and so does an empty entry of PYTHONPATH, as in `PYTHONPATH=$PYTHONPATH:/some/where`;
-an empty entry of PATH does it for programs.
+A `pyvista.py` in a study's folder is not the library. But Python puts the current folder first in
+the import path with `-m` and `-c`, and so does an empty entry of PYTHONPATH, as in
+`PYTHONPATH=$PYTHONPATH:/some/where`. An empty entry of PATH does the same for programs.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ from contextlib import chdir, contextmanager
 from pinbase.platform import portable
 
 PROCESSES_FOLDER = os.path.dirname(os.path.abspath(__file__))
-IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # that we are imported from
+IMPORT_FOLDER = os.path.dirname(os.path.dirname(PROCESSES_FOLDER))  # contains the package pinbase
 
 
 def trusted_path() -> list[str]:
-    """Return the import path of this process without the current folder, unless pinstress itself is
-    imported from that folder (a checkout).
+    """Return the import path of this process without the current folder.
+
+    The current folder stays if pinstress itself is imported from it (a checkout).
     """
     return [
         p for p in sys.path if os.path.isabs(p) and (_same(p, IMPORT_FOLDER) or not _same(p, "."))
@@ -36,10 +37,10 @@ def leave_out_current_folder() -> None:
 
 @contextmanager
 def elsewhere() -> Iterator[None]:
-    """Work in our own folder inside the block.
+    """Make the folder of this module the current folder inside the block.
 
-    When it is imported, matplotlib takes its settings from a `matplotlibrc` in the current folder.
-    The process must have no other threads.
+    Otherwise an import of matplotlib would read settings from a `matplotlibrc` in the current
+    folder. The process must have no other threads.
     """
     if portable():
         with chdir(PROCESSES_FOLDER):
@@ -57,5 +58,5 @@ def elsewhere() -> Iterator[None]:
 def _same(one: str, other: str) -> bool:
     try:
         return os.path.samefile(one, other)
-    except OSError:  # it is not there
+    except OSError:  # one of them does not exist
         return False

@@ -1,4 +1,4 @@
-"""A lock on a folder that is released however its owner ends."""
+"""A lock on a folder that is released in whatever way its owner ends."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Release = Callable[[], None]
 def lock(folder: Path) -> Release:
     """Lock a folder and return the function that releases it.
 
-    Raises: BlockingIOError when another process has locked it, FileNotFoundError when it is gone,
-    NotADirectoryError for a link or a file, OSError.
+    Raises: BlockingIOError when another process has locked it; FileNotFoundError when it does not
+    exist (any more); NotADirectoryError for a link or a file; OSError for other failures.
     """
     return _by_database(folder) if portable() else _by_kernel(folder)
 
@@ -47,8 +47,9 @@ def _by_kernel(folder: Path) -> Release:
 def _by_database(folder: Path) -> Release:
     """Lock a folder by SQLite, which locks files on every system.
 
-    Its file, empty, stays with the user's temporary files: were it in the folder, Windows could not
-    rename the folder, and were it removed, two processes could each lock one.
+    Its empty file remains among the user's temporary files. If the file were in the folder, Windows
+    could not rename the folder. If it were removed, two processes could each lock a file of their
+    own.
     """
     import sqlite3
 

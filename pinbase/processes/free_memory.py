@@ -1,7 +1,8 @@
 """The memory that is available to a process.
 
-The kernel ends a process that passes the limit of any control group it is in (a container, a batch
-job, a service), however much is free on the machine, and /proc/meminfo does not know of groups.
+The kernel ends a process that exceeds the limit of any of its control groups (a container, a batch
+job, a service), however much memory is free on the machine. /proc/meminfo does not show these
+limits.
 """
 
 from __future__ import annotations
@@ -14,15 +15,15 @@ from pathlib import Path, PurePosixPath
 from pinbase.platform import portable
 
 MB = 2.0**20
-UNLIMITED_BYTES = 2**62  # bytes: what groups without a limit say
-ASSUMED_FREE_MB = 4096.0  # MB that are free where the system does not say
+UNLIMITED_BYTES = 2**62  # bytes: a group without a limit reports this number or more
+ASSUMED_FREE_MB = 4096.0  # MB that are assumed free where the system does not report it
 
 
 def free_memory(root: Path = Path("/")) -> float:
     """Memory available to new processes, MB, within the limits of control groups.
 
     It is ASSUMED_FREE_MB where the system does not report it.
-    root: of the file system, for tests.
+    root: root of the file system, for tests.
     """
     if portable():
         return ASSUMED_FREE_MB
@@ -35,12 +36,12 @@ def free_memory(root: Path = Path("/")) -> float:
 
 @dataclass(frozen=True)
 class _Version:
-    """The file names of one version of control groups. limits: any of them may be set."""
+    """The file names of one version of control groups. limits: files, of which any may be set."""
 
     mounted: str
     limits: tuple[str, ...]
     used: str
-    reclaimable: str  # page cache that the kernel drops when memory gets short
+    reclaimable: str  # page cache that the kernel drops when memory runs short
 
 
 _CGROUP_V2 = _Version("", ("memory.max", "memory.high"), "memory.current", "inactive_file")
@@ -53,16 +54,16 @@ def free_in_groups(root: Path = Path("/")) -> float:
     """Memory, MB, that this process may still take within the limits of its control groups.
 
     It is infinite where there is no limit.
-    root: of the file system, for tests.
+    root: root of the file system, for tests.
     """
     return min((_free(folder, version) for folder, version in _groups(root)), default=float("inf"))
 
 
 def _groups(root: Path) -> Iterator[tuple[Path, _Version]]:
-    """The folders of the groups that this process is in, each group's parents too.
+    """The folders of the groups of this process, including the parents of each group.
 
-    In a container the path may be the host's, and the container's own group may be at the top of
-    what is mounted: the walk up from a path that does not exist ends at the top as well.
+    In a container the path may be the host's, while the container's own group is at the top of the
+    mounted tree. The walk up from a path that does not exist also ends at the top.
     """
     for line in _read(root / "proc" / "self" / "cgroup").splitlines():
         number, _, rest = line.partition(":")
@@ -99,6 +100,6 @@ def _read(path: Path) -> str:
 
 
 def _number(text: str) -> int | None:
-    """Bytes; None for a missing file, "max" and the number by which version 1 says the same."""
+    """Number of bytes; None for a missing file, for "max", and for version 1's number for it."""
     value = int(text) if text.strip().isdecimal() else UNLIMITED_BYTES
     return value if value < UNLIMITED_BYTES else None

@@ -1,6 +1,6 @@
-"""Interrupts are recorded, because not every library lets them through.
+"""Recording of interrupts, because not every library passes them on.
 
-C code that is imported or called turns a KeyboardInterrupt into an error of its own, or drops it.
+C code that is imported or called may turn a KeyboardInterrupt into another error, or drop it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SIGNAL_NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # the last is not on Windows
+SIGNAL_NAMES = "SIGINT", "SIGTERM", "SIGHUP"  # Windows does not have the last one
 INTERRUPT_SIGNALS = tuple(getattr(signal, name) for name in SIGNAL_NAMES if hasattr(signal, name))
 EXIT_INTERRUPTED = 130  # the exit status
 
@@ -33,19 +33,19 @@ def listen() -> None:
 
 
 def forget() -> None:
-    """Forget the interrupts that have been handled, so that later work does not end for them."""
+    """Forget interrupts that have been handled, so that they do not end later work."""
     global _came, _left
     _came, _left = False, NOTHING_WRITTEN
 
 
 def state_left(what: str) -> None:
-    """State what an interrupt from now on leaves behind."""
+    """State what an interrupt leaves behind from now on."""
     global _left
     _left = what
 
 
 def left() -> str:
-    """Return what the work that was interrupted left behind."""
+    """Return what the interrupted work has left behind."""
     return _left
 
 
@@ -80,10 +80,10 @@ def deferred() -> Iterator[None]:
 
 @contextmanager
 def blocked() -> Iterator[None]:
-    """Block interrupts of this thread inside the block, on systems that can; they come at its end.
+    """Block interrupts of this thread inside the block, where the system can; they come afterwards.
 
-    Around a fork, the child's are blocked until it has handlers of its own and calls `unblock`.
-    Around C code that sets handlers, its handlers never see ours.
+    Around a fork, this blocks the child's interrupts until it has handlers of its own and calls
+    `unblock`. Around C code that sets handlers, it keeps our interrupts from these handlers.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -104,6 +104,6 @@ def unblock() -> None:
 def _interrupt(*_: object) -> None:
     global _came
     _came = True
-    ignore()  # clearing up is not interrupted once more
+    ignore()  # so that cleaning up is not interrupted again
     if not _deferred:
         raise KeyboardInterrupt

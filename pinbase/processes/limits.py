@@ -1,4 +1,4 @@
-"""Limits on a piece of work: enforced by the kernel on Linux, by a thread elsewhere."""
+"""Limits on a piece of work, enforced by the kernel on Linux, by a thread elsewhere."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pathlib import Path
 from pinbase.platform import portable
 
 MB = 2**20
-TIME_CHECK_INTERVAL = 0.1  # s between two looks at the time
+TIME_CHECK_INTERVAL = 0.1  # s between two checks of the time
 # Exit statuses of a process that a thread has ended
 EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED = 124, 125
 
@@ -25,8 +25,9 @@ class Limits:
     """Limits on time and memory.
 
     seconds: processor time, s.
-    clock: elapsed time, s; other programs run too, but nothing may wait without end.
-    memory: bytes above those that the process has when the work begins; enforced on Linux only.
+    clock: elapsed time, s; it allows for other programs, but no work may wait forever.
+    memory: bytes in addition to those that the process has when the work begins; enforced on Linux
+    only.
     """
 
     seconds: float
@@ -36,7 +37,9 @@ class Limits:
 
 @contextmanager
 def limited(limits: Limits | None) -> Iterator[None]:
-    """End this process, which must do nothing else inside the block, when its work passes a limit.
+    """End this process when its work inside the block exceeds a limit.
+
+    The process must do nothing else inside the block.
 
     Raises: MemoryError where the limit of memory is reached.
     """
@@ -59,7 +62,7 @@ def _by_kernel(limits: Limits) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_AS, (most, hard))
     timers = {signal.ITIMER_PROF: limits.seconds, signal.ITIMER_REAL: limits.clock}
     for number in signal.SIGPROF, signal.SIGALRM:
-        signal.signal(number, signal.SIG_DFL)  # which ends the process
+        signal.signal(number, signal.SIG_DFL)  # the default action ends the process
     for timer, seconds in timers.items():
         signal.setitimer(timer, seconds if seconds < inf else 0.0)
     try:
@@ -92,7 +95,7 @@ def _watch(limits: Limits, done: threading.Event) -> None:
 
 
 def passed(status: int, limits: Limits) -> str:
-    """Name the limit that a process passed which ended with this status; empty if none."""
+    """Name the limit that a process exceeded, from its exit status; empty if it exceeded none."""
     seconds, clock = EXIT_SECONDS_PASSED, EXIT_CLOCK_PASSED
     if not portable():
         seconds, clock = -signal.SIGPROF, -signal.SIGALRM

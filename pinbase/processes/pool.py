@@ -1,14 +1,16 @@
 """Jobs in parallel processes, each of which takes one job after another over a pipe.
 
-On Linux they are forked, because a child then has every library imported (two seconds otherwise)
-and all that it needs without anything being sent. A fork is safe while no other thread runs, so
-`hold_threads` comes before the numeric libraries, and progress must not be shown from a thread. On
-other systems processes are started anew (pinbase.processes.worker) and sent the jobs, which must
-pickle. One thread costs nothing measurable: for a solid with 185,000 unknowns neither time nor any
-bit of the answer changed. A crash inside a mesher ends its process and costs the job that was
-running; another process goes on with the rest. Processes are reused, because the memory that each
-touches anew took a sixth of all the time of many small pins. No socket is opened that another
-process could find: only this process and its children can send a job.
+On Linux processes are forked. A child then has all libraries imported (which takes two seconds
+otherwise) and all data that it needs, without anything being sent. A fork is safe while no other
+thread runs, so `hold_threads` must come before the numeric libraries, and progress must not be
+shown from a thread. On other systems processes are started anew (pinbase.processes.worker) and are
+sent the jobs, which must pickle.
+
+Using a single thread has no measurable cost: for a solid with 185,000 unknowns neither the time nor
+any bit of the result changed. A crash inside a mesher ends its process and costs the job that was
+running; another process continues with the rest. Processes are reused, because touching new memory
+in each process took a sixth of the total time of many small pins. No socket is opened that another
+process could find, so only this process and its children can send a job.
 """
 
 from __future__ import annotations
@@ -36,11 +38,11 @@ Progress = Callable[[str, float], None]
 Watch = Callable[[int, str], str]
 Item = TypeVar("Item")
 
-PROGRESS_INTERVAL = 0.2  # s between two calls of progress at most, for its clock
-WATCH_INTERVAL = 0.02  # s between two looks at processes that are watched
-GRACE_SECONDS = 0.5  # s for a process to clean up once asked to end
+PROGRESS_INTERVAL = 0.2  # s, at most, between two calls of `progress`, which shows a clock
+WATCH_INTERVAL = 0.02  # s between two checks of processes that are watched
+GRACE_SECONDS = 0.5  # s for a process to clean up after it is asked to end
 
-KILL_SIGNAL = 9  # SIGKILL, which Windows has not
+KILL_SIGNAL = 9  # SIGKILL, which Windows does not have
 
 _preloaded: list[str] = []
 
@@ -49,9 +51,9 @@ _preloaded: list[str] = []
 class Job(Generic[T_co]):
     """A named piece of work.
 
-    work: is called with a function to report its progress; its result must be small, since it is
-    sent from process to process.
-    limits: limits that end its process, where that is not this one.
+    work: function that is called with a function to report its progress; its result must be small,
+    because it is sent from process to process.
+    limits: limits that end the job's process, unless the job runs in this process.
     """
 
     name: str
@@ -64,8 +66,8 @@ class ProcessDied:
     """The outcome of a job whose process ended by itself.
 
     reason: why it ended.
-    status: as in subprocess, negative for a signal.
-    limited: whether it passed a limit.
+    status: exit status as in subprocess, negative for a signal.
+    limited: whether the process exceeded a limit.
     """
 
     reason: str
@@ -79,12 +81,10 @@ def cores() -> int:
 
 
 def processes(requested: int | None) -> int:
-    """Return the number of jobs to run at a time: the number requested, or that of the cores.
+    """Return the number of jobs to run at a time: the number requested, or the number of cores.
 
-    It is one, in this process, where other threads run: a forked process would wait for them
-    forever.
-
-    Raises: InputError for an invalid number of jobs.
+    On Linux it is one, in this process, if other threads run: a forked process could wait forever
+    for their locks.
     """
     if portable():
         return requested or cores()
@@ -92,17 +92,18 @@ def processes(requested: int | None) -> int:
 
 
 def can_fork() -> bool:
-    """Return whether a fork is safe: with other threads, the child could wait for their locks
-    forever.
+    """Return whether a fork is safe.
+
+    If other threads run, the child could wait forever for their locks.
     """
     return not portable() and len(os.listdir("/proc/self/task")) == 1
 
 
 def preload(*modules: str) -> None:
-    """Import modules that jobs need once for all of them.
+    """Import modules that jobs need, once for all jobs.
 
-    A missing module is left for the job to report. Processes that are started anew import them when
-    they begin.
+    A missing module is ignored here, and reported by the job that needs it. Processes that are
+    started anew import the modules when they begin.
     """
     _preloaded.extend(modules)
     load(modules)
@@ -118,14 +119,14 @@ def in_parallel(
 ) -> list[T | ProcessDied]:
     """Run jobs, which start in their order, and return their results in that order.
 
-    most: number of jobs at a time; 1 runs them in this process.
-    progress: called with the jobs that are running and the part of the jobs that is done.
-    anew: whether processes are started anew on Linux too.
-    watch: as in `served`.
-    done: called with the number of each job and its result as soon as there is one, in this
-    process.
+    most: largest number of jobs at a time; 1 runs them in this process.
+    progress: called with the reports of the running jobs, and the fraction of jobs that is done.
+    anew: whether processes are started anew on Linux, too.
+    watch: as for `served`.
+    done: called in this process with the number of each job and its result, as soon as it is known.
 
-    Raises: what a job raises, at once, with its name and traceback in a note; no process is left.
+    Raises: the first error of a job, at once; no process is left running. From another process it
+    has a note with the job's name and traceback.
     """
     results: dict[int, T | ProcessDied] = {}
     if most == 1:
@@ -168,18 +169,20 @@ def served(
     forks: Callable[[], bool] = can_fork,
     watch: Watch | None = None,
 ) -> None:
-    """Have processes serve items, at most `most` at a time, until none is left.
+    """Let at most `most` processes at a time serve items, until no items are left.
 
-    take: returns the name of the next item and the item, None while there is none.
-    give: called with each item and its result; there may be further items then.
-    progress: called with the names of the items that are running.
-    forks: whether the next process is forked, by default where that is safe.
-    watch: called often with the number of each process and its last report; a reason that it
-    returns ends the process.
+    serve: function of an item and of a function to report progress, which returns a result.
+    take: returns the name of the next item and the item; None while there is none.
+    give: called with each item and its result; it may make further items available.
+    progress: called with the names or last reports of the running items.
+    forks: returns whether the next process is forked; by default wherever a fork is safe.
+    watch: called often with the process number and last report of each process; if it returns a
+    reason, the process is ended.
 
     A process that is not forked is started anew and sent `serve`; items are always sent.
 
-    Raises: what `serve` raises, at once, with the name and traceback in a note; no process is left.
+    Raises: the first error of `serve`, at once, with the item's name and traceback in a note; no
+    process is left running.
     """
     running: dict[Connection, _Child] = {}
     try:
@@ -243,11 +246,11 @@ class _Child:
     def take(self, name: str, item: object) -> None:
         """Send the process its next item."""
         self.item, self.doing = item, name
-        with suppress(OSError):  # it has ended meanwhile, as `next` will tell
+        with suppress(OSError):  # if the process has ended meanwhile, `next` reports it
             self.pipe.send((name, item))
 
     def next(self) -> tuple[str, Any]:
-        """Return its next message: "tells", "raises", "returns" or "dies", and the content."""
+        """Return the next message: "tells", "raises", "returns" or "dies", and its content."""
         try:
             kind, data = self.pipe.recv()
             return kind, pickle.loads(data)
@@ -257,7 +260,7 @@ class _Child:
             return "dies", ProcessDied(ended(status), status)
 
     def send(self, number: int) -> None:
-        """Send a signal, also to the programs that it runs, where it leads a group of its own."""
+        """Send a signal to the process, and to its programs if it leads a process group."""
         pid = self.process.pid
         with suppress(OSError):
             if pid and not portable() and os.getpgid(pid) == pid:
@@ -282,7 +285,7 @@ def ended(status: int) -> str:
 
 
 def _end(children: list[_Child]) -> None:
-    """End processes by signals: those inside a library's own code read no messages."""
+    """End processes by signals, because a process inside a library's own code reads no messages."""
     for child in children:
         child.send(signal.SIGTERM)
     for child in children:

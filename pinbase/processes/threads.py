@@ -1,4 +1,4 @@
-"""One thread per process, as forked processes and equal results on all machines require."""
+"""One thread per process, as required for forks and for equal results on all machines."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 _entering = threading.Lock()
 _inside = 0
-_first: threadpool_limits | None = None  # of those inside, which knows what was there before
+_first: threadpool_limits | None = None  # of the first thread inside; it knows the state before
 
 
 def hold_threads() -> None:
@@ -27,9 +27,9 @@ def hold_threads() -> None:
 def one_thread() -> Iterator[None]:
     """Use one thread in every numeric library that is already imported.
 
-    This is for users of Python, whose environment is theirs. Each thread that leaves restores the
-    state before the first came: the number belongs to the process in some libraries, to the thread
-    in others.
+    This serves users of Python, whose environment is not changed. Each thread that leaves the block
+    restores the state before the first thread entered, because some libraries keep the number of
+    threads per process, others per thread.
     """
     from threadpoolctl import threadpool_limits
 

@@ -1,4 +1,4 @@
-"""A process that serves items which its parent sends it, forked or spawned, and ends with it."""
+"""A process, forked or spawned, that serves items from its parent, and ends with the parent."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ PARENT_DEATH = 1  # PR_SET_PDEATHSIG
 def start_worker(
     serve: Serve[Item, T], forks: bool, libraries: tuple[str, ...]
 ) -> tuple[BaseProcess, Connection]:
-    """Start a process that serves items; return it with the pipe over which it gets them.
+    """Start a process that serves items; return it with the pipe over which it receives them.
 
-    forks: whether it is forked; otherwise it is a new Python, which is sent `serve`.
+    forks: whether the process is forked; otherwise it is a new Python, which is sent `serve`.
     libraries: modules that a new Python imports first.
     """
     ours, theirs = multiprocessing.Pipe()
@@ -46,19 +46,21 @@ def start_worker(
         daemon=False,
     )
     if forks:
-        with interrupts.blocked():  # a child that ours reach would go on with what we are doing
+        # Interrupts are blocked, because one in the child before it has handlers of its own would
+        # make it continue with the parent's work.
+        with interrupts.blocked():
             process.start()
     else:
         with _without_main(), _trusting():
             process.start()
-    theirs.close()  # so that its end is the pipe's
+    theirs.close()  # so that the pipe ends when the process ends
     return process, ours
 
 
 def load(modules: Iterable[str]) -> None:
-    """Import modules that work needs; a missing one is left for the work to report.
+    """Import modules that work needs; a missing module is left for the work to report.
 
-    Interrupts are deferred: one in the middle of VTK's import crashes it.
+    Interrupts are deferred, because an interrupt in the middle of VTK's import crashes it.
     """
     with interrupts.deferred(), elsewhere():
         for name in modules:
@@ -70,8 +72,8 @@ def load(modules: Iterable[str]) -> None:
 def _without_main() -> Iterator[None]:
     """Hide the main module inside the block.
 
-    Otherwise the new process would run the user's script once more, up to where it starts
-    processes. Nothing of ours is in it.
+    Otherwise the new process would run the user's script again, up to the line that starts
+    processes. The main module contains nothing that the process needs.
     """
     main = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
@@ -101,7 +103,7 @@ def _serve(
     serve: Serve[Item, T], pipe: Connection, parent: int, libraries: tuple[str, ...]
 ) -> None:
     """Serve the items that the process is sent, until there are no more."""
-    hold_threads()  # of a user of Python, whose environment does not say so
+    hold_threads()  # needed for users of Python, whose environment does not set it
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # an interrupt is for the parent, which ends us
     signal.signal(signal.SIGTERM, _leave)
     interrupts.unblock()
@@ -131,15 +133,17 @@ def _do_items(serve: Serve[Item, T], pipe: Connection) -> None:
 
 
 def _leave(*_: object) -> None:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # leaving is not begun once more
-    # In a finalizer Python prints what is raised and goes on; the parent kills us then.
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # so that leaving does not begin again
+    # In a finalizer Python would print the SystemExit and continue. It is not printed; the parent
+    # then kills this process.
     sys.unraisablehook = lambda _: None
     sys.exit(128 + signal.SIGTERM)
 
 
 def _end_with_parent(parent: int) -> None:
-    """End this process when `parent`, the process that started it, has ended in any way; at once if
-    it has already.
+    """End this process when its parent has ended in any way; at once if it already has.
+
+    parent: number of the process that started this one.
     """
     if portable():
         threading.Thread(target=_wait_for_parent, daemon=True).start()
@@ -147,7 +151,7 @@ def _end_with_parent(parent: int) -> None:
     import ctypes
 
     ctypes.CDLL(None).prctl(PARENT_DEATH, signal.SIGKILL)
-    if os.getppid() != parent:  # it was gone before
+    if os.getppid() != parent:  # the parent had already ended
         sys.exit(1)
 
 

@@ -14,16 +14,18 @@ from reports.data.mechanics import DriveTable
 from reports.data.row import Units
 from reports.format.numbers import DASH, short, ten_to
 
-DIGITS_OF_LARGEST = 4  # of a changing value, in the decimals that all instants share
+DIGITS_OF_LARGEST = 4  # of a changing value; all instants share its number of decimals
 ARROW_HEAD_LENGTH = 10.0  # length of an arrow's head
-KEY_ARROW_SHARE = 0.45  # of the largest force, about: the arrow that explains the scale
+KEY_ARROW_SHARE = 0.45  # of the largest force, about; the arrow in the key
 
 
 @dataclass(frozen=True)
 class Arrow:
     """The arrow of a force at the first frame.
 
-    at: its tail on the picture. length: on the picture. angle: its direction, degrees.
+    at: its tail on the picture.
+    length: on the picture.
+    angle: its direction, degrees clockwise from x.
     """
 
     colour: str
@@ -38,7 +40,7 @@ class Arrow:
 
 
 def arrows(scene: Scene) -> list[Arrow]:
-    """Return an arrow for each connection, with a length in proportion to its force."""
+    """Return an arrow for each connection, with a length proportional to its force."""
     shown_arrows = []
     forces = scene.projection(scene.forces[0]).tolist()
     for c, ((fx, fy), joint) in enumerate(zip(forces, scene.tails, strict=True)):
@@ -50,19 +52,23 @@ def arrows(scene: Scene) -> list[Arrow]:
 
 
 def applied_arrows(scene: Scene) -> list[tuple[Arrow, float]]:
-    """Return the arrow of each applied force, which ends just before its point, and its size."""
+    """Return for each applied force its arrow, which ends just before its point, and its
+    magnitude.
+    """
     return [_ending(scene, *load, scene.largest) for load in scene.applied]
 
 
 def couple_arrows(scene: Scene) -> list[tuple[Arrow, float]]:
-    """Return the arrow of each applied couple, about which it turns, and its size."""
+    """Return for each applied couple its arrow, about which it turns, and its magnitude."""
     return [_ending(scene, *load, scene.largest_couple) for load in scene.couples]
 
 
 def _ending(scene: Scene, at: Floats, force: Floats, largest: float) -> tuple[Arrow, float]:
-    """Return the arrow of a load that ends just before its point at the first frame, and its size.
+    """Return the arrow of a load, which ends just before its point, at the first frame, and its
+    magnitude.
 
-    at, force: (F, 3). largest: load of this kind.
+    at, force: (F, 3) over the frames.
+    largest: the largest load of this kind.
     """
     (x, y), (fx, fy) = scene.seen(at[0]).tolist(), scene.projection(force[0]).tolist()
     size, shown = float(np.linalg.norm(force[0])), float(np.hypot(fx, fy))
@@ -75,7 +81,7 @@ def _ending(scene: Scene, at: Floats, force: Floats, largest: float) -> tuple[Ar
 
 
 def key(scene: Scene) -> tuple[float, Arrow] | None:
-    """Return a round force and its arrow for the key; None without forces."""
+    """Return a round force and its arrow for the key; None if no force acts."""
     if not scene.largest > 0.0:
         return None
     force = nice(KEY_ARROW_SHARE * scene.largest)
@@ -84,9 +90,7 @@ def key(scene: Scene) -> tuple[float, Arrow] | None:
 
 @dataclass(frozen=True)
 class Shown:
-    """The number formats of the forces and couples and, for each drive, of its position and its
-    force.
-    """
+    """The number formats of the forces, the couples, and each drive's position and force."""
 
     force: Fixed
     couple: Fixed
@@ -110,7 +114,9 @@ class Shown:
 
 @dataclass(frozen=True)
 class ForceRow:
-    """A connection in the table: its values at the first frame, its largest force and the time."""
+    """A connection in the table: its values at the first frame, its largest force and the time of
+    it.
+    """
 
     name: str
     body: str
@@ -148,7 +154,7 @@ def rows(scene: Scene, shown: Shown) -> list[ForceRow]:
 
 @dataclass(frozen=True)
 class Fixed:
-    """Format of a quantity: in `unit`, multiplied by `factor`, with a fixed number of decimals."""
+    """The format of a quantity: divided by `factor`, in `unit`, with a fixed number of decimals."""
 
     unit: str
     factor: float
@@ -156,9 +162,9 @@ class Fixed:
 
     @staticmethod
     def of(values: Floats, unit: str) -> Fixed:
-        """Return the format with four digits of the largest value.
+        """Return the format with four digits for the largest value.
 
-        Very large and very small numbers are written with powers of ten.
+        Very large and very small numbers have a power of ten in the unit.
         """
         largest = float(np.max(np.abs(values[np.isfinite(values)]), initial=0.0))
         if largest == 0.0:

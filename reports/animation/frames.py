@@ -13,15 +13,15 @@ from reports.data.mechanics import DriveTable, ReactionTable
 from reports.data.skeleton import Skeleton
 from reports.format.drawing.projection import Projection
 
-MAX_FRAMES = 240  # frames: 4 s at 60 per second
+MAX_FRAMES = 240  # 4 s at 60 frames per second
 PICTURE_WIDTH, MAX_PICTURE_HEIGHT, MIN_PICTURE_HEIGHT = 960.0, 560.0, 300.0
-PICTURE_MARGIN = 36.0  # room for names and for what is drawn around a joint
+PICTURE_MARGIN = 36.0  # room for names and for symbols around a joint
 
 
 def frames(
     skeleton: Skeleton, table: ReactionTable | None, drives: list[DriveTable]
 ) -> NDArray[np.int64]:
-    """Return the indices of at most 240 instants: evenly spaced ones, and those of the peaks."""
+    """Return the indices of at most 240 instants: evenly spaced ones and those of the peaks."""
     count = len(skeleton.position)
     if count <= MAX_FRAMES:
         return np.arange(count)
@@ -37,7 +37,9 @@ def frames(
 class Viewport:
     """A mapping from lengths in the study's unit to the picture, whose y axis points downwards.
 
-    scale: picture units per length. left, top: the corner. height: of the picture.
+    scale: picture units per length.
+    left, top: the origin of the lengths on the picture.
+    height: of the picture.
     """
 
     scale: float
@@ -51,7 +53,7 @@ class Viewport:
 
         points: (N, 2), in the study's unit.
         tails: (M, 2), the points at which the arrows start, in the study's unit.
-        arrows: (M, 2), in units of the picture, y upwards.
+        arrows: (M, 2), in picture units, y upwards.
         """
         all_points = np.concatenate([points, tails])
         offsets = np.concatenate([np.zeros_like(points), arrows])
@@ -60,7 +62,7 @@ class Viewport:
         if not size.any():
             size = np.ones(2)
         low, high = 0.0, float(np.min(room / np.maximum(size, 1e-9 * size.max())))
-        for _ in range(40):  # the arrows keep their length, so there is no formula
+        for _ in range(40):  # bisection, since the arrows do not scale with the points
             middle = 0.5 * (low + high)
             fits = np.all(np.ptp(middle * all_points + offsets, axis=0) <= room)
             low, high = (middle, high) if fits else (low, middle)
@@ -75,10 +77,13 @@ class Viewport:
     def turning(
         points: Floats, tails: Floats, arrows: Floats, views: Sequence[Projection]
     ) -> Viewport:
-        """Return the viewport about the middle of all points in which they fit in several views.
+        """Return the viewport about the middle of all points in which points and arrows fit in
+        several views.
 
-        points: (N, 3), in the study's unit. tails: (M, 3), the points at which the arrows start.
-        arrows: (M, 3), in units of the picture. views: the first is that of the viewport.
+        points: (N, 3), in the study's unit.
+        tails: (M, 3), the points at which the arrows start.
+        arrows: (M, 3), in picture units.
+        views: the first is that of the viewport.
         """
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         away = np.concatenate([points, tails]) - middle
@@ -106,7 +111,9 @@ class Viewport:
 
 
 def nice(value: float) -> float:
-    """Return the largest 1, 2 or 5 times a power of ten that does not exceed the value."""
+    """Return the largest 1, 2 or 5 times a power of ten that does not exceed a value; 1 if the
+    value is not positive and finite.
+    """
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))

@@ -22,18 +22,18 @@ from reports.format.numbers import engineering, short
 from reports.format.script_json import script_json
 from reports.format.template import rendered
 
-# Azimuth from the front to the right and elevation, degrees; the isometric view is the first
+# Names with azimuth (from the front to the right) and elevation, degrees; the first is shown first.
 VIEW_ANGLES = (
     ("Isometric", 45.0, float(np.degrees(np.arctan(np.sqrt(0.5))))),
     ("Front", 0.0, 0.0),
     ("Right side", 90.0, 0.0),
     ("Top", 0.0, 90.0),
 )
-SCALE_BAR_SHARE = 0.2  # of the linkage's size, about: the bar that shows a length
+SCALE_BAR_SHARE = 0.2  # of the linkage's size, about; length of the scale bar
 
 
 def write_animations(results: Results, directory: Path) -> list[Path]:
-    """Write an animation for every case whose linkage is known, and return the paths."""
+    """Write an animation for every case with a known linkage; return the paths."""
     paths = []
     for skeleton in results.skeletons:
         path = directory / animation_name(skeleton.case)
@@ -82,7 +82,9 @@ def render_animation(skeleton: Skeleton, results: Results) -> str:
 
 
 def _pin_axes(scene: Scene) -> list[tuple[Floats, Floats]]:
-    """Return the ends (2, 2) of the axis of every pin in space, and of the pin, at first."""
+    """Return for each joint with an axis the ends (2, 2) of the axis and of the pin, at the first
+    frame.
+    """
     along = scene.projection(scene.skeleton.axes[scene.instants[0]]) * [1.0, -1.0]
     both = np.array([[-1.0], [1.0]])
     return [
@@ -93,7 +95,9 @@ def _pin_axes(scene: Scene) -> list[tuple[Floats, Floats]]:
 
 
 def _matched(table: ReactionTable, skeleton: Skeleton) -> ReactionTable | None:
-    """Return the table in the order of the linkage's connections; None when some are missing."""
+    """Return the table in the order of the linkage's connections; None if some are
+    missing in it.
+    """
     names = [name for name, _, _ in skeleton.connections]
     if not set(names) <= set(table.connections):
         return None

@@ -14,8 +14,8 @@ from reports.data.row import Units
 from reports.format.drawing.projection import three_views
 from reports.format.numbers import short
 
-PLAYING_SECONDS = 6.0  # that a motion takes to play, about
-WATCHABLE_SECONDS = (2.0, 12.0)  # seconds that need no other speed
+PLAYING_SECONDS = 6.0  # for which a motion plays, about
+WATCHABLE_SECONDS = (2.0, 12.0)  # durations that play in real time
 
 
 def player_data(scene: Scene, drives: list[DriveTable], units: Units) -> dict[str, Any]:
@@ -80,17 +80,17 @@ def _connections(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _each(scene: Scene, points: Floats) -> list[list[float]]:
-    """Return the places of each of N points (T, N, 3) in all frames."""
+    """Return the positions on the picture of each of N points (T, N, 3) in all frames."""
     return [pixels(points) for points in np.moveaxis(scene.placed(points[scene.instants]), 1, 0)]
 
 
 def _components(scene: Scene, force: Floats, significant: int = 5) -> dict[str, list[float | None]]:
-    """Return the components (F, 3) of a force in the axes that the picture has."""
+    """Return the components of a force (F, 3) along the axes of the picture."""
     return {f"f{axis}": digits(force[:, i], significant) for i, axis in enumerate(scene.axes)}
 
 
 def _space(scene: Scene) -> dict[str, Any]:
-    """Return what the script turns a linkage in space by.
+    """Return the data with which the script turns a linkage in space.
 
     base: the directions right, up and towards the viewer of the front view.
     """
@@ -111,9 +111,9 @@ def _space(scene: Scene) -> dict[str, Any]:
 
 
 def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
-    """Return the speeds of playback: the factor on real time, its label, whether it is the default.
+    """Return the speeds of playback: factor on real time, label, and whether it is the default.
 
-    A motion of milliseconds or of hours plays in seconds.
+    By default a motion of milliseconds or of hours plays in seconds.
     """
     if time is None or len(time) < 2:
         return []
@@ -128,7 +128,7 @@ def speeds(time: Floats | None) -> list[tuple[float, str, bool]]:
 
 
 def digits(values: Floats, significant: int = 5) -> list[float | None]:
-    """Return the numbers rounded relative to the largest; None for missing ones."""
+    """Return the numbers rounded relative to the largest; None for non-finite ones."""
     finite = values[np.isfinite(values)]
     largest = float(np.abs(finite).max(initial=0.0))
     decimals = significant - 1 - int(np.floor(np.log10(largest))) if largest > 0.0 else 0
@@ -141,5 +141,5 @@ def pixels(points: Floats) -> list[float]:
 
 
 def _plain(value: float) -> float:
-    # Whole numbers without ".0", and no minus zero: a third of the file.
+    # Whole numbers without ".0" and without minus zero; this saves a third of the file.
     return int(value) if value == int(value) else value

@@ -1,4 +1,4 @@
-"""The picture of a linkage in an animation at each frame."""
+"""The picture of a linkage in each frame of an animation."""
 
 from __future__ import annotations
 
@@ -18,24 +18,25 @@ from reports.format.drawing.projection import PLANE, Projection, isometric, thre
 from reports.format.drawing.svg_labels import label_offsets
 from reports.format.drawing.zigzag import zigzag
 
-MAX_ARROW_LENGTH, MAX_SPACE_ARROW_LENGTH = 120.0, 80.0  # arrow; in space, which needs room
-APPLIED_GAP = 9.0  # between the tip of an applied load and its point, at which a joint may be
-LABELLED_LENGTH_FACTOR = 1.2  # of an applied load's arrow with the room for its size
-AXIS_REACH, PIN_REACH = 34.0, 20.0  # from a joint: its axis, and the pin about it
+MAX_ARROW_LENGTH, MAX_SPACE_ARROW_LENGTH = 120.0, 80.0  # shorter in space, to save room
+APPLIED_GAP = 9.0  # between the tip of an applied load and its point, where a joint may be
+LABELLED_LENGTH_FACTOR = 1.2  # arrow of an applied load with its label, over the arrow alone
+AXIS_REACH, PIN_REACH = 34.0, 20.0  # half lengths of the axis of a joint and of its pin
 BODY_COLOUR_COUNT = 10  # in animation.css
-JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of joints' names
-MAX_NAME_LETTERS = 14  # of a name on the picture
-# Of a slider's shortest and longest length: its cylinder
+JOINT_LETTER_WIDTH, JOINT_LINE_HEIGHT, JOINT_LABEL_GAP = 7.6, 15.0, 13.0  # of the names of joints
+MAX_NAME_LETTERS = 14  # longer names are clipped on the picture
+# Length of the cylinder of a slider over its shortest and its longest length
 CYLINDER_SHARE_OF_SHORTEST, CYLINDER_SHARE_OF_LONGEST = 0.85, 0.3
 SPRING_HALF_WIDTH = 7.0  # also in animation.js
-RAIL_OVERHANG = 30.0  # that a rail goes on past the block
+RAIL_OVERHANG = 30.0  # of a rail beyond the extreme positions of the block
 
 
 @dataclass(frozen=True)
 class Slide:
-    """A slider, drawn as cylinder and rod (`cylinder` long) or as a block on a fixed `rail`.
+    """A slider, drawn as cylinder (`cylinder` long) and rod, or as a block on a fixed `rail`.
 
-    ends: (F, 2, 2), its two ends in every frame. base, moving: the colours of its bodies.
+    ends: (F, 2, 2), its two ends in every frame.
+    base, moving: the colours of its bodies.
     """
 
     name: str
@@ -62,7 +63,11 @@ class Slide:
 
 @dataclass(frozen=True)
 class Scene:
-    """The contents of the picture in F frames, with positions in its own unit, y downwards."""
+    """The contents of the picture in F frames; positions are in picture units, y downwards.
+
+    instants: the instant of each frame.
+    table: the forces at the connections of the linkage; None if not known.
+    """
 
     skeleton: Skeleton
     instants: NDArray[np.int64]
@@ -86,11 +91,11 @@ class Scene:
 
     @cached_property
     def projection(self) -> Projection:
-        """The view in which the picture starts."""
+        """The initial view of the picture."""
         return PLANE if self.skeleton.flat else isometric(self.skeleton.up)
 
     def seen(self, points: Floats) -> Floats:
-        """Return the places (..., 2) on the picture of points (..., 3), as it starts."""
+        """Return the positions (..., 2) of points (..., 3) on the picture in its initial view."""
         return self.view(self.projection(points))
 
     @cached_property
@@ -99,19 +104,21 @@ class Scene:
         return np.asarray(0.5 * (self.points.min(axis=0) + self.points.max(axis=0)))
 
     def placed(self, points: Floats) -> Floats:
-        """Return points (..., 3) as the script takes them: in space from the middle, (..., 3)."""
+        """Return points (..., 3) as the script needs them: on the picture (..., 2), or for a
+        linkage in space relative to the middle (..., 3), in picture units.
+        """
         if self.skeleton.flat:
             return self.seen(points)
         return np.asarray(self.view.scale * (points - self.middle))
 
     @cached_property
     def view(self) -> Viewport:
-        # With square-root arrows, which are the longer ones.
+        # Room for arrows on a square-root scale, which are the longer ones.
         size = np.linalg.norm(self.forces, axis=2, keepdims=True)
         longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
         arrows = self.longest * longer * self.forces / (self.largest or 1.0)
         tails = self.skeleton.position[self.instants][:, self.tails]
-        # An applied load ends at its point.
+        # The arrow of an applied load ends at its point.
         for load in self.skeleton.applied:
             size = load.sizes[self.instants, None]
             longer = np.sqrt(self.largest / np.where(size > 0.0, size, np.inf))
@@ -135,7 +142,9 @@ class Scene:
 
     @cached_property
     def forces(self) -> Floats:
-        """The forces (F, C, 3) on the pins; of a planar linkage, in its plane."""
+        """The forces (F, C, 3) on the pins; for a planar linkage without the component across its
+        plane.
+        """
         if self.table is None:
             return np.zeros((len(self.instants), 0, 3))
         forces = self.table.forces[self.instants]
@@ -168,7 +177,9 @@ class Scene:
 
     @cached_property
     def levers(self) -> list[int | None]:
-        """The joint by which each applied load is joined to its body, at first; None without."""
+        """The index of the joint to which each applied load is connected, at the first frame; None
+        without one.
+        """
         first = self.instants[0]
         return [self.skeleton.lever(load, first) for load in self.skeleton.applied]
 
@@ -200,8 +211,8 @@ class Scene:
         return [[index[name] for name in link] for link in self.skeleton.links]
 
     def shape(self, body: str) -> Floats:
-        """Return the positions (N, 2) at the first frame of the joints of a body, and of the centre
-        of mass where the body is drawn up to it.
+        """Return the positions (N, 2) of the joints of a body at the first frame, followed by its
+        centre of mass if the body is drawn up to it.
         """
         b = self.skeleton.bodies.index(body)
         stem = self.centres[0, [b]] if body in self.skeleton.stems else np.zeros((0, 2))
@@ -218,7 +229,9 @@ class Scene:
 
     @cached_property
     def pitch(self) -> list[tuple[str, Floats, float]]:
-        """The colour, the ends (F, 2, 2) and the radius (or 0) of every pitch circle or line."""
+        """The colour, the ends (F, 2, 2) and the radius of every pitch curve; the radius of a line
+        is 0.
+        """
         return [
             (
                 self.colour(c.body),
@@ -229,9 +242,8 @@ class Scene:
         ]
 
     def named_between(self, body: str) -> list[int] | None:
-        """Return the two joints of a body between which its name is farthest from any joint.
-
-        None where the name is too long.
+        """Return the two joints of a body between which its name is farthest from any joint; None
+        where the name is too long.
         """
         members = self.members[self.skeleton.bodies.index(body)]
         at = self.joints[0]
@@ -245,7 +257,9 @@ class Scene:
         return best if best and 2.0 * clear(best) > JOINT_LETTER_WIDTH * len(body) else None
 
     def colour(self, body: str) -> str:
-        """Return the colour class of a body; what is not a body of the linkage is ground."""
+        """Return the colour class of a body; "ground" for anything that is not a body of the
+        linkage.
+        """
         if body not in self.skeleton.bodies:
             return "ground"
         return f"b{self.skeleton.bodies.index(body) % BODY_COLOUR_COUNT}"
@@ -286,7 +300,10 @@ class Scene:
         return Slide(name, ends, cylinder, rail, angle, *owners)
 
     def _owner(self, end: Floats) -> str:
-        """Return the colour of the body whose only joint is at this end of a slider."""
+        """Return the colour of the body whose only joint is at this end of a slider.
+
+        A fixed end without such a body has the colour of the ground.
+        """
         for b, members in enumerate(self.members):
             if len(members) == 1:
                 off = self.skeleton.position[:, members[0]] - end
@@ -319,10 +336,10 @@ class Scene:
 
     @property
     def axes(self) -> str:
-        """The axes that the picture has."""
+        """The names of the axes of the picture, "xy" or "xyz"."""
         return "xy" if self.skeleton.flat else "xyz"
 
 
 def clipped(name: str) -> str:
-    """Return a name that is short enough for the picture."""
+    """Return a name, shortened to fit the picture."""
     return name if len(name) <= MAX_NAME_LETTERS else name[: MAX_NAME_LETTERS - 1] + "…"

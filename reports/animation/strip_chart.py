@@ -1,4 +1,4 @@
-"""Curves against time under an animation: forces on the pins, forces of the drives."""
+"""Curves against time below an animation: forces on the pins, forces of the drives."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reports.format.numbers import short
 
 STRIP_LEFT, STRIP_RIGHT = 70.0, PICTURE_WIDTH - 14.0
 STRIP_TOP_MARGIN, STRIP_BOTTOM_MARGIN = 24.0, 22.0
-LOW_STRIP_HEIGHT = 100.0  # a strip too low for a scale: it shows zero and the extremes
+LOW_STRIP_HEIGHT = 100.0  # a lower strip has no scale, only zero and the extremes
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def strip(
 ) -> Strip:
     """Return a panel of curves against time.
 
-    curves: each (F,), labelled in multiples of `factor`.
+    time: (F,). curves: each (F,), labelled in multiples of `factor`.
     """
     low = min(0.0, *(float(np.min(c)) for c in curves))
     high = max(0.0, *(float(np.max(c)) for c in curves))
@@ -93,12 +93,12 @@ def strip(
 
 
 def extremes(low: float, high: float) -> list[float]:
-    """Return zero, and the ends of the range that are far enough from it to be labelled."""
+    """Return the ends of the range that are far enough from zero to be labelled, and zero."""
     return [v for v in (low, high) if abs(v) > 0.35 * (high - low)] + [0.0]
 
 
 def ticks(low: float, high: float, most: int) -> list[float]:
-    """Return round numbers from low to high, about as many as requested."""
+    """Return round numbers from low to high, about `most` of them."""
     step = nice((high - low) / most)
     if (high - low) / step > 1.5 * most:
         step = nice(2.6 * step)

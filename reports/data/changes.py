@@ -1,4 +1,4 @@
-"""Changes with which a pin reaches its factor of safety."""
+"""Changes by which a pin reaches its required safety factor."""
 
 from __future__ import annotations
 
@@ -10,13 +10,17 @@ from pinbase.dimensions import Stress, Time
 
 @dataclass(frozen=True)
 class Remedy:
-    """The changes, each sufficient alone, that make a pin reach its factor in its worst case.
+    """The changes, each sufficient alone, by which a pin reaches its required factor in its worst
+    case.
 
-    For a singular row they are computed with the upper end of its stress range.
-    yield_strength: that would suffice.
-    load_factor: on all loads; exact where stress is `proportional` to them (not in contact).
-    diameter_factor: on all diameters, bores and fillets; None where `diameter_note` gives a reason.
-    impulse_time: of the impulse that loads the pin; None without one or where no time suffices.
+    For a singular row they are computed from the upper end of its stress range.
+    yield_strength: the strength that would suffice.
+    load_factor: the factor on all loads; exact where stress is `proportional` to them (not in
+    contact).
+    diameter_factor: the factor on all diameters, bores and fillets; None where `diameter_note`
+    gives a reason.
+    impulse_time: the time of the impulse that loads the pin; None without an impulse or where no
+    time suffices.
     given_time: the impulse time of the study.
     singular: whether the factor is reached only outside the excluded zones.
     """
@@ -35,7 +39,7 @@ class Remedy:
 
 
 def unsized(changes: tuple[Remedy, ...]) -> tuple[Remedy, ...]:
-    """Return the changes of the pins that no diameter brings to their factor."""
+    """Return the changes of the pins that reach their factor with no diameter."""
     return tuple(
         c for c in changes if not c.diameter_factor and "pinstress size" not in c.diameter_note
     )

@@ -12,14 +12,14 @@ CHART_NAME = "chart"
 
 @dataclass(frozen=True)
 class ChartPoint:
-    """The cost and the error of one mesh of one element of a model.
+    """The cost and the error of one mesh of one element type of a model.
 
-    All numbers are None if it `failed`, which states the reason.
-    dofs: unknowns, 0 for a beam.
+    All numbers are None if the solution failed; `failed` then states the reason.
+    dofs: number of unknowns, 0 for a beam.
     seconds: median wall time from the mesh to the maximum over the motion.
-    memory: peak above that of the process with its libraries loaded, MB.
+    memory: peak memory above that of the process with its libraries loaded, MB.
     error: relative error of the maximum with respect to the reference.
-    chosen: whether `auto` ends on this mesh.
+    chosen: whether the model `auto` ends on this mesh.
     """
 
     model: str

@@ -1,4 +1,4 @@
-"""A study before anything is solved: what it describes and what would be solved."""
+"""A study before anything is solved: what the study describes and what a run would solve."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reports.data.skeleton import Skeleton, planar_skeleton
 
 @dataclass(frozen=True)
 class CheckedPin:
-    """A pin with what supports it, in words, where it has no lugs."""
+    """A pin and its support. support: in words, for a pin without lugs."""
 
     shape: PinShape
     support: str
@@ -21,10 +21,12 @@ class CheckedPin:
 
 @dataclass(frozen=True)
 class PlannedRow:
-    """A row that a run would have.
+    """A row of results that a run would produce.
 
-    instants: of the case. largest: force of a link on the pin, None where only a run finds it, as
-    after a drop. at: its connection.
+    instants: the number of instants of the case.
+    largest: the largest force of a link on the pin; None where only a run finds it, as after a
+    drop.
+    at: the connection of this force.
     """
 
     pin: str
@@ -40,9 +42,9 @@ class PlannedRow:
 class CheckedStudy:
     """A valid study.
 
-    summary: sentences on the study, its mechanism and its cases. problems: what a run would not
-    solve, and what may be wrong.
-    motions, space: of the linkage, by case, in the plane and in space.
+    summary: sentences on the study, its mechanism and its cases.
+    problems: what a run would not solve, and possible mistakes.
+    motions, space: the motions of the linkage by case, in the plane and in space.
     by_run: cases whose forces only a run finds.
     """
 
@@ -59,5 +61,5 @@ class CheckedStudy:
 
     @property
     def skeletons(self) -> tuple[Skeleton, ...]:
-        """The parts of every motion that are drawn."""
+        """The parts to draw of every motion."""
         return (*map(planar_skeleton, self.motions), *self.space)

@@ -1,7 +1,7 @@
 """Comparison of two runs, read from their results.json.
 
-It lists the inputs that differ, the results that changed, and whether these changed by more than
-their errors.
+The comparison lists the inputs that differ and the results that changed, and whether the results
+changed by more than their errors.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 from reports.data.requirement_pairs import RequirementPair, requirement_pairs
 
-UNCHANGED_TOLERANCE = 1e-9  # relative: what differs by less has not changed
+UNCHANGED_TOLERANCE = 1e-9  # relative; values that differ by less count as unchanged
 DECISION_CHANGED = "decision changed"
 BEYOND_ERRORS = "changed beyond the errors"
 WITHIN_ERRORS = "within the errors"
@@ -33,11 +33,12 @@ CHANGE_KINDS = (
 
 @dataclass(frozen=True)
 class Side:
-    """A pin in a case of one run; None where there is no number.
+    """A pin in a case of one run; a number is None where the run has none.
 
     maximum, low, high: the maximum stress and its range by the error, in the units of the first
     run.
-    factor: safety factor. outcome: as in assess.judgement.
+    factor: safety factor.
+    outcome: as in assess.judgement.
     """
 
     maximum: float | None
@@ -83,7 +84,9 @@ class RowPair:
 
 @dataclass(frozen=True)
 class ValuePair:
-    """Another value that differs, by its names; None where a run lacks it."""
+    """A value other than those of rows that differs between the runs, by its names; None where a
+    run lacks it.
+    """
 
     names: tuple[str, ...]
     first: Any
@@ -99,13 +102,14 @@ class ValuePair:
 
 @dataclass(frozen=True)
 class RunComparison:
-    """The differences of two runs.
+    """The differences between two runs.
 
-    folders, titles: of both runs. stress, force: units of both; forces are in those of the first.
-    inputs: values that differ by key; None where a run of an earlier version wrote no inputs.
-    forces: largest forces by case and connection.
+    folders, titles: of both runs.
+    stress, force: the units of the first run, in which both are compared.
+    inputs: the values that differ, by key; None where a run of an earlier version wrote no inputs.
+    forces: the largest forces by case and connection.
     margins: the governing check of each pin, and its margin.
-    requirements: those of both runs; None where a run is of an earlier version, which lists none.
+    requirements: those of both runs; None where a run of an earlier version lists none.
     """
 
     folders: tuple[str, str]
@@ -124,7 +128,7 @@ class RunComparison:
         return sum(row.kind == kind for row in self.rows)
 
     def requirements_that(self, *changes: str) -> list[RequirementPair]:
-        """Return the requirements with one of some changes."""
+        """Return the requirements whose change is one of `changes`."""
         return [pair for pair in self.requirements or () if pair.change in changes]
 
 
@@ -136,7 +140,7 @@ def compared(
 ) -> RunComparison:
     """Return the comparison of the contents of two results.json.
 
-    units: stress and force unit of the second run, in those of the first.
+    units: the stress unit and the force unit of the second run, in those of the first.
     """
     stress, force = units
     both = first, second
@@ -208,7 +212,7 @@ def _differing(
 
 
 def unchanged(a: Any, b: Any) -> bool:
-    """Return whether two values are equal, numbers but for round-off."""
+    """Return whether two values are equal; numbers may differ by round-off."""
     numbers = isinstance(a, float) and isinstance(b, float)
     return _same(a, b) if numbers else bool(a == b)
 
@@ -230,8 +234,9 @@ def _forces(run: Mapping[str, Any], unit: float) -> dict[tuple[str, ...], float]
 
 
 def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]:
-    """Return the least margin of each pin that counts and its check, to six digits against
-    round-off.
+    """Return the least margin of each pin among the checks that govern, and the name of the check.
+
+    The margin is rounded to six digits, so that round-off is not reported as a change.
     """
     least: dict[tuple[str, ...], tuple[float, str]] = {}
     for row in run.get("margins", ()):

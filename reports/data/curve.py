@@ -1,4 +1,4 @@
-"""The curve of factors of safety against one number of a study, as plain data."""
+"""The curve of safety factors against one number of a study, as plain data."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from assess.judgement import OUTCOME_ORDER
 from pinbase.grouped import grouped
 
 CURVE_NAME = "curve"
-AS_DESCRIBED = "as described"  # after an outcome, where only a run finds the range over the joint
+AS_DESCRIBED = "as described"  # follows an outcome where only a run finds the range over the joint
 
 
 @dataclass(frozen=True)
 class CurvePoint:
     """One pin in one case at one value of the number, in the curve's units.
 
-    error_estimate: of max_von_mises; both None where the design could not be solved, for `reason`.
+    error_estimate: error of max_von_mises; both are None where the design could not be solved, for
+    `reason`.
     safety_factor: None without a maximum or a yield strength.
     outcome, depends_on: as in the results of a run.
     """
@@ -41,13 +42,13 @@ class CurvePoint:
 
     @property
     def known_factor(self) -> float:
-        """The factor; 0 where nothing is known of it, inf where no load stresses the pin."""
+        """The safety factor; 0 where it is unknown, inf where no load stresses the pin."""
         return math.inf if self.max_von_mises == 0.0 else self.safety_factor or 0.0
 
     @property
     def factor_ends(self) -> tuple[float, float] | None:
-        """The factor at the upper and at the lower end of the maximum's error; None without a
-        factor.
+        """The safety factor at the upper and at the lower end of the error of the maximum; None
+        without a factor.
         """
         factor, stress = self.safety_factor, self.max_von_mises
         if factor is None or not stress:
@@ -58,10 +59,11 @@ class CurvePoint:
 
 @dataclass(frozen=True)
 class Crossing:
-    """A value at which a pin's factor passes the required one: between two values next to each
-    other, and by interpolation.
+    """A value of the number at which a pin's factor passes the required one.
 
-    rising: whether the factor is reached above that value, or below it.
+    between: the neighbouring computed values.
+    value: interpolated between them.
+    rising: whether the factor is reached above this value, rather than below it.
     """
 
     pin: str
@@ -72,14 +74,15 @@ class Crossing:
 
 @dataclass(frozen=True)
 class FactorCurve:
-    """Factors of safety of pins against one number.
+    """The safety factors of pins against one number of a study.
 
-    key, unit: of the number; nominal: its value in the study.
+    key, unit: of the number.
+    nominal: the value of the number in the study.
     required: the factor to reach, if any.
-    stress_unit: of the points' stresses.
-    points: by rising value.
+    stress_unit: the unit of the points' stresses.
+    points: in the order of rising values.
     in_lugs: the pins whose lugs are not judged.
-    other_checks: those that a run judges besides yield, and that are not judged here.
+    other_checks: the checks besides yield that a run makes and that are not made here.
     """
 
     study: str
@@ -108,20 +111,23 @@ class FactorCurve:
         return tuple(dict.fromkeys(point.value for point in self.points))
 
     def least(self, pin: str) -> tuple[CurvePoint, ...]:
-        """At every value the pin's case with the smallest factor; first those without a factor,
-        since nothing is known of them.
+        """Return the pin's case with the smallest factor at every value of the number.
+
+        Cases without a factor precede all others, since nothing is known about them.
         """
         by_value = grouped((point.value, point) for point in self.points if point.pin == pin)
         return tuple(min(points, key=lambda p: p.known_factor) for points in by_value.values())
 
     def worst(self, pin: str) -> tuple[CurvePoint, ...]:
-        """At every value the worst case of a pin: a smaller factor may be all that is required."""
+        """Return the worst case of a pin at every value; its factor need not be the smallest, since
+        another case may require less.
+        """
         by_value = grouped((point.value, point) for point in self.points if point.pin == pin)
         return tuple(min(points, key=lambda p: p.rank) for points in by_value.values())
 
     @property
     def moves(self) -> bool:
-        """Whether any result differs between values."""
+        """Whether any result differs between values; True if fewer than two values were solved."""
         known = [p for p in self.points if p.max_von_mises is not None]
         by_row = grouped(
             ((p.pin, p.case), (p.max_von_mises, p.safety_factor, p.outcome)) for p in known
@@ -130,8 +136,9 @@ class FactorCurve:
 
     @property
     def reached(self) -> tuple[Crossing, ...]:
-        """The values at which pins pass the required factor, by the straight line between the
-        logarithms of neighbouring factors.
+        """The values at which pins pass the required factor.
+
+        The logarithm of the factor is interpolated linearly between neighbouring values.
         """
         out = []
         for pin in self.pins if self.required else ():

@@ -1,4 +1,4 @@
-"""Factors and utilisations of rows with their errors, and which row is worst."""
+"""Safety factors and utilisations of rows with their errors, and which row is worst."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Ends = tuple[float, float]
 def factor_ends(pin: PinResult) -> Ends:
     """Return the lower and upper end of a row's safety factor, by the error of the maximum.
 
-    An end is inf where no stress may be left. The row must have a factor.
+    The upper end is inf where the error is as large as the stress. The row must have a factor.
     """
     if pin.safety_factor_interval is not None:
         low, high = pin.safety_factor_interval
@@ -28,14 +28,16 @@ def factor_ends(pin: PinResult) -> Ends:
 
 
 def low_factor(pin: PinResult) -> float | None:
-    """Return the factor of a row by the largest of these stresses; None without one."""
+    """Return the lower end of a row's factor, by its maximum or by the stress beneath contact,
+    whichever is less; None for a row without a factor.
+    """
     if pin.safety_factor is None or not pin.max_von_mises:
         return None
     return min(factor_ends(pin)[0], beneath_factor(pin))
 
 
 def beneath_factor(pin: PinResult) -> float:
-    """Return the factor by the stress beneath contact with its error; inf without any."""
+    """Return the factor by the stress beneath contact with its error; inf without such a stress."""
     contact = pin.places and pin.places.contact
     if not contact or not contact.upper_end or pin.yield_strength is None:
         return inf
@@ -43,26 +45,27 @@ def beneath_factor(pin: PinResult) -> float:
 
 
 def limit(pin: PinResult) -> float:
-    """Return the factor that is required of a row; 1, at which a pin yields, without one."""
+    """Return the factor that is required of a row; without one 1, at which the pin yields."""
     return pin.required or 1.0
 
 
 def common_factor(pins: Iterable[PinResult]) -> float | None:
-    """Return the factor that is required of all rows, None without one or where they differ."""
+    """Return the factor that is required of all rows; None if none is required or they differ."""
     factors = {pin.required for pin in pins}
     return factors.pop() if len(factors) == 1 else None
 
 
 def largest_factor(pins: Iterable[PinResult]) -> float | None:
-    """Return the largest factor that is required of any row, None where none is required."""
+    """Return the largest factor that is required of any row; None where none is required."""
     return max((pin.required for pin in pins if pin.required is not None), default=None)
 
 
 def utilisation(pin: PinResult, limit: float) -> Ends | None:
-    """Return the lower and upper end of required over actual factor.
-
-    The ends are equal where the factor is a number, inf where they are unknown; None without a
+    """Return the lower and upper end of the required factor over the actual one; None without a
     factor.
+
+    The ends are equal where the factor is a single number. The upper end is inf where the factor
+    has no positive lower end.
     """
     if pin.safety_factor is None:
         return None
@@ -71,8 +74,10 @@ def utilisation(pin: PinResult, limit: float) -> Ends | None:
 
 
 def worst_first(results: Results) -> list[PinResult]:
-    """Return the rows that fail, then those not decided, then the others, by utilisation: first
-    where that is unknown, last where no load stresses the pin.
+    """Return the rows, the worst first: by outcome, then by falling utilisation.
+
+    Among rows of one outcome those of unknown utilisation come first, and those that no load
+    stresses last.
     """
 
     def place(pin: PinResult) -> tuple[int, float]:

@@ -13,22 +13,23 @@ from reports.data.decision import factor_ends
 from reports.data.over_loads import BENEATH_CONTACT, JudgedStress, over_landings, over_links
 from reports.data.row import Dependence, PinResult
 
-WITH_ERROR = "with its error"  # of what lies beneath, which exceeds what is permitted only with it
+WITH_ERROR = "with its error"  # stress beneath contact that is too large only with its error
 SEVERAL_TOGETHER = "several properties together"  # of a joint
-# A pin that is loose at the temperature of the case: strong enough, and retained by nothing known.
+# For a pin that is loose at the temperature of the case: strong enough, not known to be retained
 PRESS_FIT, LOST_FIT = "press fit", "press fit lost in"
 YIELD_STRENGTH = "yield strength"
 
 
 def depends_on(pin: PinResult) -> tuple[Dependence, ...]:
-    """Return what changes the outcome of a row; empty where nothing does, and where the outcome is
-    not decided as described.
+    """Return the values on which the outcome of a row depends.
 
-    The stress beneath contact comes first, then the ranges, that of the joint first, that of the
-    yield strength last. A pin that comes loose depends on what else retains it.
+    The result is empty where no value changes the outcome, and where the outcome as described is
+    not decided. The stress beneath contact comes first, then the ranges: first that of the joint,
+    last that of the yield strength. The outcome for a pin that comes loose depends on what else
+    retains it.
     """
     described = pin.as_described
-    if pin.max_von_mises == 0.0:  # which does not keep a pin in its place
+    if pin.max_von_mises == 0.0:  # an unloaded pin may come loose, too
         return tuple(_loose(pin.lost_fits, math.inf))
     if described == NOT_DECIDED or not pin.max_von_mises or not pin.safety_factor:
         return ()
@@ -50,14 +51,15 @@ def _over_strength(
     pin: PinResult, judged: JudgedStress, contact: ContactPlace | None,
     joint: JointResult | None, alone: bool,
 ) -> Iterator[Dependence]:  # fmt: skip
-    """Yield the yield strength if it changes the outcome within its range, or with other ranges.
+    """Yield the yield strength if it changes the outcome within its range, alone or with other
+    ranges.
 
-    alone: whether no other range does; else those together are not told.
+    alone: whether no other range changes the outcome; only then are combinations with others tried.
     """
     assert pin.strength_range is not None
     end = pin.strength_range[0 if judged.safe else 1]
     deep = contact.upper_end if contact else 0.0
-    if judged.safe and deep > judged.permitted:  # beneath contact it fails as described
+    if judged.safe and deep > judged.permitted:  # too large beneath contact even as described
         deep = 0.0
     most = max(judged.high, deep)
     permitted = judged.permitted * end / judged.strength
@@ -81,10 +83,12 @@ def _over_strength(
 def _over_loads_and_joint(
     pin: PinResult, judged: JudgedStress, contact: ContactPlace | None, joint: JointResult | None
 ) -> list[Dependence]:
-    """Return what changes the outcome of a row at one yield strength."""
+    """Return the loads and properties of the joint that change the outcome of a row at one yield
+    strength.
+    """
     strength = judged.strength
     ranges = [*_beneath(judged, contact), *_over_joint(judged, contact, joint)]
-    if judged.safe:  # loose it is strong enough, but what retains it is open
+    if judged.safe:  # a loose pin is strong enough, but what retains it is not known
         ranges += _loose(pin.lost_fits, strength / judged.maximum)
     if pin.landing is not None:
         ranges += over_landings(judged, contact, pin.landing)
@@ -94,7 +98,9 @@ def _over_loads_and_joint(
 
 
 def _loose(lost: Sequence[LostFit], factor: float) -> Iterator[Dependence]:
-    """Yield the interference of the lugs in which a pin comes loose, by the one that lacks most."""
+    """Yield the interference of the lugs in which a pin comes loose; the lug that lacks most
+    interference gives the numbers.
+    """
     if lost:
         worst, where = max(lost, key=lambda x: x.needed), ", ".join(x.where for x in lost)
         yield Dependence(
@@ -111,8 +117,11 @@ def joined(names: Sequence[str]) -> str:
 def _as_of_row(
     contact: ContactPlace | None, joint: JointResult | None, strength: float
 ) -> tuple[ContactPlace | None, JointResult | None]:
-    """Return contact and joint with the stress beneath contact as of a place with the strength of
-    the row, which the case of a pin with a hardened surface has and its core has not.
+    """Return contact and joint with the stress beneath contact scaled to the yield strength of the
+    row.
+
+    In a pin with a hardened surface the stress beneath contact is in the core, whose strength
+    differs from that of the row.
     """
     if contact is None or contact.strength is None:
         return contact, joint
@@ -135,8 +144,8 @@ def _together(
 ) -> Iterator[Dependence]:
     """Yield the ranges of joint, landing and links together if none alone changes the outcome.
 
-    Each multiplies the stress by the ratio that it has alone, since they were not solved together:
-    exact where stress is proportional to the loads.
+    The ranges were not solved together. Each multiplies the stress by the ratio by which it changes
+    the stress alone, which is exact where stress is proportional to the loads.
     """
     extreme, over = max if judged.safe else min, joint.range if joint else None
     loads = {"landing": pin.landing, "links": pin.sharing}
@@ -147,15 +156,15 @@ def _together(
     }
     if len(ratios) + (over is not None) < 2:
         return
-    more, variations = math.prod(ratios.values()), over.variations if over else ()
+    load_ratio, variations = math.prod(ratios.values()), over.variations if over else ()
     counted = [v for v in variations if judged.safe or v.what != FRICTION]
     most = _largest_over_joint(judged, over) if over and judged.safe else judged.high
     beneath = [contact.upper_end if contact else 0.0, *(_upper_end(contact, v) for v in counted)]
     tops = [most] if judged.safe else [_top(judged, v) for v in counted]
-    top, deep = (more * extreme(x) for x in ([judged.high, *tops], beneath))
+    top, deep = (load_ratio * extreme(x) for x in ([judged.high, *tops], beneath))
     if (max(top, deep) > judged.permitted) == judged.safe:
         ends = over.max_von_mises if over else ()
-        stress = more * extreme((judged.maximum, *ends))
+        stress = load_ratio * extreme((judged.maximum, *ends))
         factor = judged.strength / (max(stress, deep) if judged.safe else stress)
         yield Dependence(TOGETHER, "", joined([*["joint"] * (over is not None), *ratios]), factor)
 
@@ -163,8 +172,7 @@ def _together(
 def _beneath(judged: JudgedStress, contact: ContactPlace | None) -> Iterator[Dependence]:
     """Yield the stress beneath contact if it contradicts a row that is safe as described.
 
-    It does where no distance from the edges of lugs makes the row plainly safe, and the field away
-    from them exceeds the limit.
+    It contradicts the row if its upper end exceeds the permitted stress.
     """
     if contact is None or not judged.safe or contact.upper_end <= judged.permitted:
         return
@@ -181,8 +189,9 @@ def _over_joint(
 ) -> Iterator[Dependence]:
     """Yield the variations of the joint that change the outcome.
 
-    A row that fails is safe at another value only if the stress beneath contact is safe there, too,
-    and never by friction. A row that is safe, beneath contact too, may no longer be so there.
+    A row that fails becomes safe by a variation only if the stress beneath contact is then safe,
+    too, and never by friction. A row that is safe, also beneath contact, may become unsafe at
+    either place.
     """
     over = joint.range if joint else None
     if joint is None or over is None:
@@ -198,7 +207,7 @@ def _over_joint(
     way = 1.0 if judged.safe else -1.0
     turning = _alone_first(turning, lambda v: way * _counted(judged, v))
     reads_beneath = contact is not None and judged.safe and contact.upper_end <= judged.permitted
-    enough = reads_beneath and any(v.what != TOGETHER for v in deep)  # one alone, beneath contact
+    enough = reads_beneath and any(v.what != TOGETHER for v in deep)  # one property suffices
     if enough:
         turning = [v for v in turning if v.what != TOGETHER]
     for v in turning:
@@ -211,14 +220,14 @@ def _over_joint(
     if not (turning or enough) and judged.safe and largest > judged.permitted:
         lugs = "assumed lugs" if over.assumed else "its lugs"
         what, value = "joint", f"contact with {lugs}"
-        if over.model == "contact":  # by friction, which multiplies what the others do
+        if over.model == "contact":  # only with friction, which multiplies the stress of the others
             what, value = TOGETHER, f"all properties and {FRICTION}"
         factor = judged.strength / over.max_von_mises[1]
         yield Dependence(what, value, "joint", factor)
     if contact is None or not reads_beneath:
         return
     beneath = _alone_first([v for v in deep if v not in turning], lambda v: _upper_end(contact, v))
-    if any(v.what == TOGETHER for v in turning):  # which says enough
+    if any(v.what == TOGETHER for v in turning):  # reported already
         beneath = [v for v in beneath if v.what != TOGETHER]
     for v in beneath:
         end = _upper_end(contact, v)
@@ -232,7 +241,9 @@ def _over_joint(
 
 
 def _largest_over_joint(judged: JudgedStress, over: JointRange) -> float:
-    """Return the largest stress over the joint with its error; friction multiplies it."""
+    """Return the largest stress over the joint with its error. Friction multiplies that of all
+    other variations.
+    """
     tops = [_top(judged, v) for v in over.variations if v.what != FRICTION]
     tops += [over.max_von_mises[1]] if over.model == "foundation" else []
     rubbed = (v.max_von_mises / judged.maximum for v in over.variations if v.what == FRICTION)
@@ -240,25 +251,26 @@ def _largest_over_joint(judged: JudgedStress, over: JointRange) -> float:
 
 
 def _top(judged: JudgedStress, v: Variation) -> float:
-    """Return the upper end of a variation, whose interval has its error already."""
+    """Return the upper end of the stress of a variation; an interval includes the error already."""
     return v.interval[1] if v.interval else v.max_von_mises * judged.high / judged.maximum
 
 
 def _alone_first(
     variations: list[Variation], beyond: Callable[[Variation], float]
 ) -> list[Variation]:
-    """Return the variations of one property each, or else that of several together which goes
-    farthest: what one alone changes, all of them together do, too.
+    """Return the variations of a single property, or if there are none the variation of several
+    properties that goes farthest.
 
+    Whatever one property changes alone, all together change, too.
     beyond: tells how far a variation goes.
     """
     return [v for v in variations if v.what != TOGETHER] or sorted(variations, key=beyond)[-1:]
 
 
 def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
-    """Return the upper end of the stress beneath contact with a variation of the joint.
+    """Return the upper end of the stress beneath contact in a variation of the joint.
 
-    Its relative error is that of the joint as the study has it.
+    Its relative error is taken from the joint as described. The result is 0 without such a stress.
     """
     if contact is None or not contact.beneath or v.beneath is None:
         return 0.0
@@ -266,15 +278,17 @@ def _upper_end(contact: ContactPlace | None, v: Variation) -> float:
 
 
 def _counted(judged: JudgedStress, v: Variation) -> float:
-    """Return the stress that decides: for a safe row the upper end of its interval, if any."""
+    """Return the stress that decides a variation: for a safe row the upper end of its interval, if
+    any.
+    """
     return v.interval[1] if judged.safe and v.interval else v.max_von_mises
 
 
 def _crossing(judged: JudgedStress, v: Variation, given: float | None, model: str) -> float | None:
     """Return the length at which the permitted stress is reached, interpolated linearly.
 
-    It lies between the given length and the varied one; it is the varied one on foundations, since
-    the maximum as given is then of another model.
+    The length lies between the given length and the varied one. On foundations it is the varied
+    length, since the maximum as given is then of another model.
     """
     if model == "foundation":
         return v.length

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pinbase.dimensions import Energies, Force, Forces, Lengths, Time, Times, Velocities, Velocity
 
-PEAK_QUANTITIES = {  # what is reported of a drop, and its dimension
+PEAK_QUANTITIES = {  # reported quantities of a drop: name and dimension
     "vertical": ("vertical force of the ground", "force"),
     "along": ("force along the strut", "force"),
     "stroke": ("stroke of the strut", "length"),
@@ -20,7 +20,7 @@ PEAK_QUANTITIES = {  # what is reported of a drop, and its dimension
 
 @dataclass(frozen=True)
 class DropPeak:
-    """A largest value and its time; dimension: of the value."""
+    """The largest value of a quantity and its time. dimension: of the value."""
 
     name: str
     value: Annotated[float, "own"]
@@ -30,13 +30,16 @@ class DropPeak:
 
 @dataclass(frozen=True)
 class DropRecord:
-    """A landing as a drop: histories (T,) over time and the values derived from them.
+    """A landing computed as a drop: histories (T,) over time and values derived from them.
 
-    sink_velocity: of the sprung mass, positive downwards. strut: force along it.
-    leg_drag: the part of the drag that the leg transmits. peaks: by the names of PEAK_QUANTITIES.
+    sink_velocity: of the sprung mass, positive downwards.
+    strut: force along the strut.
+    leg_drag: the part of the drag that the leg transmits.
+    peaks: by the names of PEAK_QUANTITIES.
     load_factor: vertical force over the weight.
-    imbalance: largest imbalance of the energies over the first kinetic energy.
-    impulse_force: m V over impulse_time. equal_impulse_time: the impulse time at which both agree.
+    imbalance: largest imbalance of the energies over the initial kinetic energy.
+    impulse_force: m V over impulse_time.
+    equal_impulse_time: the impulse time at which this force equals that of the drop.
     spin_up: largest drag by appendix D to 14 CFR part 23; None without a wheel.
     closing, opening: (P,) vertical force over the strokes (P,) of the first compression and
     extension.

@@ -10,7 +10,7 @@ from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
 from reports.data.row import PinResult
 
-# Cases; of more, a report shows only the governing one of each pin in detail
+# With more cases, a report shows only the governing case of each pin in detail.
 MAX_DETAILED_CASES = 8
 
 
@@ -18,9 +18,9 @@ MAX_DETAILED_CASES = 8
 class EnvelopeCell:
     """A pin in a case.
 
-    used: utilisation, the upper end of a range, None without one. governs: whether the case
-    governs.
-    largest: the largest force and moment of each of its connections.
+    used: utilisation, the upper end of a range; None without one.
+    governs: whether the case is the worst of the pin.
+    largest: the largest force and moment of each of its connections in this case.
     """
 
     result: PinResult
@@ -36,7 +36,7 @@ def governing_cases(results: Results) -> dict[str, str]:
 
 
 def envelope(results: Results) -> list[EnvelopeCell]:
-    """Return a cell for every pin in every case in which it was solved."""
+    """Return a cell for every pin in every case for which it was solved."""
     governs = governing_cases(results)
     largest = grouped(
         ((pin, table.case), peak)
@@ -61,7 +61,7 @@ def case_names(results: Results) -> list[str]:
 
 
 def paragraphs(results: Results) -> dict[str, str]:
-    """Return the paragraph that demands a case, of those that cite one."""
+    """Return the paragraph of the regulation that demands each case, for cases that cite one."""
     of_drops = {drop.case: drop.clause for drop in results.drops if ":" in drop.clause}
     of_wheels = {table.case: table.clause for table in results.reactions if table.clause}
     return {case: text.partition(":")[0] for case, text in (of_drops | of_wheels).items()}
@@ -78,7 +78,9 @@ def omitted_note(results: Results) -> str:
 
 
 def detailed_rows(results: Results) -> Results:
-    """Return the results to show in detail: all, or of many cases the governing one of each pin."""
+    """Return the results to show in detail: all, or if there are many cases the governing one of
+    each pin.
+    """
     if len(case_names(results)) <= MAX_DETAILED_CASES:
         return results
     governs = governing_cases(results)

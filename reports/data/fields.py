@@ -1,4 +1,4 @@
-"""Fields of a pin in results: at the nodes of its mesh or surface."""
+"""Fields of a pin in the results: values at the nodes of its mesh or surface."""
 
 from __future__ import annotations
 
@@ -26,8 +26,11 @@ from pinbase.dimensions import (
 class BandLoad:
     """A band of a pin and the load applied to it, in the pin's axes.
 
-    z: its two ends. radius: of the band. force: (3,). moment: (3,), about its middle on the axis.
-    held: whether the band is held; force and moment are zero then.
+    z: the two ends of the band.
+    radius: of the band.
+    force: (3,).
+    moment: (3,), about the middle of the band on the axis.
+    held: whether the band is held; force and moment are then zero.
     """
 
     connection: str
@@ -45,10 +48,10 @@ class BandLoad:
 
 @dataclass(frozen=True)
 class Still:
-    """The pin of a Field at another instant.
+    """The fields of a pin at another instant than that of its Field.
 
     displacement: (N, 3). von_mises: (N,). loads: at this instant.
-    pressed: (N,), where lugs press on it; None without lugs.
+    pressed: (N,), whether lugs press on the node; None without lugs.
     """
 
     time: Time
@@ -60,7 +63,7 @@ class Still:
 
 @dataclass(frozen=True)
 class Volume:
-    """The whole volume of a revolved pin, or of one with cuts.
+    """The whole volume of a revolved pin, or of a pin with cuts.
 
     points: (N, 3). cells: (M, 6), type "wedge", or (M, 10), "tetra10". displacement: (N, 3).
     stress: (N, 6), components as in Field. von_mises: (N,). pressed: (N,), as in Still.
@@ -81,18 +84,23 @@ class Volume:
 class Field:
     """A mesh with results at its nodes.
 
-    points: (N, 3). cells: (M, 10) in VTK's order of "tetra10", or (M, 4) "quad" for a surface
-    alone.
-    displacement: (N, 3). stress: (N, 6), components xx, yy, zz, yz, xz, xy. von_mises: (N,).
+    points: (N, 3).
+    cells: (M, 10) in VTK's order of "tetra10", or (M, 4) "quad" for a surface alone.
+    displacement: (N, 3).
+    stress: (N, 6), components xx, yy, zz, yz, xz, xy.
+    von_mises: (N,).
     envelope: (N,), the largest von Mises stress over all instants at surface nodes, NaN inside.
-    yield_strength: for the factor of safety at each point, None without one.
-    outside: the largest stress outside excluded zones and pressed surface, and its place (x, y, z).
+    yield_strength: for the safety factor at each point; None if not given.
+    outside: the largest stress outside the excluded zones and the pressed surface, and its place
+    (x, y, z).
     beneath: the largest stress and its place (x, y, z), if it is inside and the mesh is a surface.
-    time: None without a motion. loads: at this instant. stills: along the motion, if requested.
+    time: None without a motion.
+    loads: at this instant.
+    stills: other instants of the motion, if requested.
     volume: the whole volume, if requested, where the field is a surface.
-    contact_pressure: (N,), from its lugs.
-    pressed: (N,), where lugs press on the part shown, and where the envelope has only the instants
-    at which they do not (NaN if there are none); None without lugs.
+    contact_pressure: (N,), from the lugs.
+    pressed: (N,), whether lugs press on the part shown; None without lugs. At these nodes
+    `envelope` includes only the instants without pressure (NaN if there are none).
     solids: the ranges of z of local solids about cuts.
     """
 

@@ -1,6 +1,6 @@
-"""The governing check besides the model's stress against yield: the one with the least margin.
+"""The governing check besides the model's stress against yield: the check with the least margin.
 
-The model's stress has rows of its own.
+The model's stress against yield has rows of its own.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from reports.data.results import Results
 def governing(results: Results) -> list[PinMargin]:
     """Return the governing check of every pin in every case that has one, the worst first.
 
-    What leaves out the cuts of a pin tells only what is negative.
+    A check that leaves out the cuts of a pin counts only if its margin is negative.
     """
     worst: dict[tuple[str, str], PinMargin] = {}
     for margin in results.margins:

@@ -1,4 +1,4 @@
-"""Decision of a run about its pins: the worst of all checks that count, of each pin and of all."""
+"""The decision of a run about its pins: the worst check that counts, of each pin and of all."""
 
 from __future__ import annotations
 
@@ -20,14 +20,20 @@ from reports.data.row import PinResult
 
 @dataclass(frozen=True)
 class JudgedCheck:
-    """One check of a pin in a case (empty if over several cases).
+    """One check of a pin in a case.
 
-    check: its name. outcome: one of assess.judgement. factor: allowable over demand.
+    case: empty for a check over several cases.
+    check: its name.
+    outcome: one of assess.judgement.
+    factor: allowable over demand.
     required: the required factor.
     used: required over actual factor, the upper end of a range, by which checks are compared.
-    row: the row of the model's maximum, None for a margin; margin: None for other checks.
-    reason: why a check other than the model's maximum is not decided, or over what it depends.
-    stated: whether a requirement of the study states the factor, not those on loads.
+    row: the row of the model's maximum; None for other checks.
+    margin: the margin of strength; None for other checks.
+    reason: why a check other than the model's maximum is not decided, or over which range it
+    depends.
+    stated: whether the factor is that of a requirement of the study, rather than of its factors on
+    loads.
     """
 
     pin: str
@@ -57,7 +63,7 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
     """Return all checks that count, the worst first."""
     checks = [_of_row(row, limit(row)) for row in results.pins]
     checks += checks_of(results, results.margins)
-    checks += map(_of_requirement, _besides(results))
+    checks += map(_of_requirement, _separate_requirements(results))
     open_ = results.fatigue.not_decided if results.fatigue else {}
     checks += (
         JudgedCheck(pin, "", FATIGUE_LIFE, NOT_DECIDED, None, 1.0, -inf, reason=reason)
@@ -67,27 +73,29 @@ def judged_checks(results: Results) -> list[JudgedCheck]:
 
 
 def checks_of(results: Results, margins: Iterable[PinMargin]) -> Iterator[JudgedCheck]:
-    """Yield those of some margins that count as checks besides yield."""
+    """Yield the checks, other than yield, of the margins that count."""
     rows = {(row.pin, row.case): row for row in results.pins}
     for m in margins:
         if m.margin.governs and m.margin.method != YIELD_METHOD and m.used >= 0.0:
             yield _of_margin(m, rows.get((m.pin, m.case)))
 
 
-def _besides(results: Results) -> list[RequirementRow]:
-    """Return the requirements that neither a row nor a margin judges with the same factor, and
-    lives that only the error of the stress may not reach, which the margin does not know.
+def _separate_requirements(results: Results) -> list[RequirementRow]:
+    """Return the requirements that neither a row nor a margin judges with the same factor.
+
+    Fatigue lives that are missed only because of the error of the stress are included, since a
+    margin does not have this error.
     """
     stated = {(s.pin, s.case, s.level, s.check) for s in results.stated}
     factors = {(row.pin, row.case): limit(row) for row in results.pins}
 
-    def besides(r: RequirementRow) -> bool:
+    def is_separate(r: RequirementRow) -> bool:
         if r.check == "yield":
             return r.required > factors.get((r.pin, r.case), inf)
         by_error = (r.check, r.outcome) == ("fatigue", NOT_DECIDED) and r.reached is not None
         return r.key in stated or r.outcome == DEPENDS or by_error
 
-    return [r for r in requirement_rows(results) if besides(r) and not r.left_out]
+    return [r for r in requirement_rows(results) if is_separate(r) and not r.left_out]
 
 
 def worst_checks(results: Results) -> dict[str, JudgedCheck]:
@@ -134,7 +142,7 @@ def _of_row(row: PinResult, required: float) -> JudgedCheck:
 
 
 def _of_requirement(row: RequirementRow) -> JudgedCheck:
-    """Return the check of a requirement; what was not checked is not decided."""
+    """Return the check of a requirement; a requirement that was not checked is not decided."""
     state = {MET: SAFE, MISSED: FAILS, NOT_CHECKED: NOT_DECIDED}.get(row.outcome, row.outcome)
     used = row.required / row.reached if row.reached else -inf
     reason = f"needs {row.needs}" if row.needs else row.over
@@ -147,7 +155,8 @@ def _of_requirement(row: RequirementRow) -> JudgedCheck:
 def _of_margin(pin_margin: PinMargin, row: PinResult | None) -> JudgedCheck:
     """Return the check of a margin.
 
-    A margin has only the upper end of a demand; the model's stress has a lower end, too.
+    A margin has only the upper end of a demand. For the rupture check of a row the lower end
+    follows from the row, so that the check may be not decided.
     """
     m = pin_margin.margin
     factor = m.allowable / m.demand if m.demand and m.allowable is not None else None

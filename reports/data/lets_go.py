@@ -1,9 +1,10 @@
-"""What lets go first: the load factors at which parts of a pin's joint yield, fail or collapse.
+"""The parts of a pin's joint that let go first: the load factors at which they yield, fail or
+collapse.
 
-A load factor multiplies all loads of the case. That of a check is its allowable over its demand.
-Where the demand comes from contact with a clearance or rounded edges it grows less or more than in
-proportion, which the step says; where a press fit stresses the part without any load the ratio is
-no load factor, and there is none.
+A load factor multiplies all loads of the case. The load factor of a check is its allowable over its
+demand. A demand that comes from contact with a clearance or with rounded edges does not grow in
+proportion to the loads; the step then says so. Where a press fit stresses the part without any
+load, this ratio is no load factor, and none is given.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ LIMIT_LOAD_NEED = 'analysis.limit_load = "always"'
 PRESS_FIT_NEED = "a run at the larger loads, because a press fit stresses it without any"
 SHARP_EDGE_NEED = "edge_radius of its lugs, because pressure has no bound at a sharp edge"
 WALLS = {"bore": "bore of the lug", "bushing": "bushing", "hole": "hole of the lug"}
-IN_LUG = (*WALLS.values(), LUG_METHOD)  # with which the steps of a lug begin
+IN_LUG = (*WALLS.values(), LUG_METHOD)  # beginnings of the names of steps of a lug
 SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a step
 
 
@@ -38,13 +39,16 @@ SAME_FACTOR = 1e-3  # relative difference of load factors of places that share a
 class LettingGo:
     """A part that lets go, and the factor on all loads of the case at which it does.
 
-    what: the part or the check. at: bands or segments. effect: what happens to it.
-    load_factor: None where it is not known; low, high: its ends by the error of a stress, or by
-    the bracket of a limit load.
-    required: the factor that is required of it, None where none is.
-    in_proportion: whether the demand grows in proportion to the loads; otherwise the factor is
-    that of a demand that did.
-    needs: what a load factor takes where there is none.
+    what: the part or the check.
+    at: its bands or segments.
+    effect: what happens to the part.
+    load_factor: None where it is not known.
+    low, high: the ends of the load factor by the error of a stress, or by the bracket of a limit
+    load.
+    required: the factor that is required; None where none is.
+    in_proportion: whether the demand grows in proportion to the loads; otherwise the factor assumes
+    that it does.
+    needs: what is missing for a load factor.
     """
 
     what: str
@@ -60,15 +64,16 @@ class LettingGo:
 
     @property
     def missed(self) -> bool:
-        """Whether it lets go before the required factor."""
+        """Whether the part lets go before the required factor."""
         least = self.load_factor if self.low is None else self.low
         return None not in (least, self.required) and least < self.required  # type: ignore[operator]
 
 
 @dataclass(frozen=True)
 class PinSteps:
-    """The steps of a pin in its governing case, the first to let go first; those without a load
-    factor come last.
+    """The steps of a pin in its governing case, in the order in which its parts let go.
+
+    Steps without a load factor come last.
     """
 
     row: PinResult
@@ -81,7 +86,7 @@ class PinSteps:
 
     @property
     def unknown(self) -> tuple[LettingGo, ...]:
-        """The steps without one."""
+        """The steps without a load factor."""
         return tuple(step for step in self.steps if step.load_factor is None)
 
 
@@ -107,10 +112,12 @@ def steps(row: PinResult, shape: PinShape | None) -> list[LettingGo]:
 class _Joint:
     """The way in which the stress of a pin in its lugs depends on the loads.
 
-    solved: whether the joint was. proportional: whether contact grows in proportion: without
-    clearance and with sharp edges. pressed: whether the pin is pressed into a lug; bushed: lugs
-    into which a bushing is, which stresses these two alone. structure: lugs whose force only the
-    joint gives.
+    solved: whether the joint was solved.
+    proportional: whether contact grows in proportion to the loads: without clearance and with sharp
+    edges.
+    pressed: whether the pin is pressed into a lug.
+    bushed: lugs with a pressed-in bushing, which stresses only the lug and the bushing.
+    structure: lugs whose force is known only from the joint.
     """
 
     solved: bool
@@ -132,7 +139,10 @@ class _Joint:
         )
 
     def judged(self, steps: Iterable[tuple[LettingGo, bool]]) -> Iterator[LettingGo]:
-        """Yield steps with what the joint does to them; each comes with whether it is of it."""
+        """Yield the steps with the effect of the joint on them.
+
+        steps: each with whether its demand comes from the model of the joint.
+        """
         for step, of_joint in steps:
             if not (of_joint and self.solved) and step.at not in self.structure:
                 yield step
@@ -143,7 +153,10 @@ class _Joint:
 
 
 def _of_pin(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
-    """Yield the yielding of surface, section, and of what lugs press on."""
+    """Yield the steps of the surface, the section and the core of the pin, and of its material
+    beneath contact and under the edges of lugs. Each comes with True: its stress is that of the
+    joint.
+    """
     strength, required = row.yield_strength, _required(row)
     if not strength:
         return
@@ -183,7 +196,7 @@ def _of_pin(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
 
 
 def _of_lugs(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
-    """Yield the yielding of lugs and bushings at their bores."""
+    """Yield the steps of lugs and bushings that yield at their bores."""
     for stress in row.joint.lugs if row.joint else ():
         if stress.yield_strength and stress.max_von_mises:
             ends = _of_stress(stress.max_von_mises, stress.error_estimate, stress.yield_strength)
@@ -198,7 +211,9 @@ def _wall(stress: LugStress) -> str:
 
 
 def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
-    """Yield the checks that count, at each of their places, but yield by the models' stress."""
+    """Yield the checks that count, at each of their places, without yield by the stress of the
+    models, which has steps already.
+    """
     for m in row.margins:
         factor = m.safety_factor
         by_model = m.method == YIELD_METHOD or (
@@ -207,7 +222,7 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
         without_load = m.kind == "fatigue" or m.method.startswith(PRESS_FIT_METHOD)
         if factor is None or by_model or not m.governs or without_load:
             continue
-        if m.omits_cuts:  # where it lets go earlier
+        if m.omits_cuts:  # the pin lets go earlier at its cuts
             yield _unknown(m, CUTS_NEEDED), False
             continue
         high = None
@@ -222,7 +237,7 @@ def _of_margins(row: PinResult) -> Iterator[tuple[LettingGo, bool]]:
 
 
 def _unknown(m: Margin, needs: str) -> LettingGo:
-    """Return a check without a load factor, with what that needs."""
+    """Return a check without a load factor. needs: what is missing for one."""
     return LettingGo(m.method, m.at, _effect(m), required=m.factor, clause=m.clause, needs=needs)
 
 
@@ -235,7 +250,7 @@ def _effect(m: Margin) -> str:
 
 
 def _not_computed(row: PinResult, joint: _Joint) -> Iterator[LettingGo]:
-    """Yield what has no load factor, with what it needs."""
+    """Yield the steps without a load factor, with what is missing for each."""
     for m in row.worst:
         if m.needs and m.governs:
             yield _unknown(m, m.needs)
@@ -251,7 +266,7 @@ def _not_computed(row: PinResult, joint: _Joint) -> Iterator[LettingGo]:
 
 
 def _required(row: PinResult) -> float | None:
-    """Return the factor that is required of stress against yield."""
+    """Return the safety factor that is required against yield."""
     return next((m.factor for m in row.margins if m.method == YIELD_METHOD), row.required)
 
 
@@ -263,8 +278,9 @@ def _of_stress(stress: float, error: float | None, strength: float) -> tuple[flo
 
 
 def _merged(steps: Iterable[LettingGo]) -> list[LettingGo]:
-    """Return steps in which places that let go of the same at the same load share one, with the
-    ends of all.
+    """Return the steps with those of the same kind and load at several places merged into one.
+
+    A merged step has the outer ends of all.
     """
     merged: list[LettingGo] = []
     for step in steps:
@@ -279,7 +295,7 @@ def _merged(steps: Iterable[LettingGo]) -> list[LettingGo]:
 
 
 def _outer(a: LettingGo, b: LettingGo) -> LettingGo:
-    """Return the earlier of two steps, with the ends of both."""
+    """Return the earlier of two steps, with the outer ends of both."""
     first = min(a, b, key=lambda step: inf if step.load_factor is None else step.load_factor)
     lows, highs = (
         [x for x in ends if x is not None] for ends in ((a.low, b.low), (a.high, b.high))

@@ -48,8 +48,10 @@ def lug_mode(method: str) -> str | None:
 
 
 def bore_wall(method: str) -> str:
-    """Return which wall of a bushed lug a check of the stress at the bore judges: "bushing" or
-    "hole"; empty for a lug without one, and for other checks.
+    """Return the wall of a bushed lug that a check of the stress at the bore judges: "bushing" or
+    "hole".
+
+    The result is empty for a lug without a bushing, and for other checks.
     """
     is_wall = lug_mode(method) == BORE_STRESS
     return next((w for w in ("bushing", "hole") if is_wall and method.endswith(f", {w}")), "")

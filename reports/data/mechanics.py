@@ -23,7 +23,7 @@ from pinbase.dimensions import (
     Velocities,
 )
 
-DrivePosition = Annotated[float, "position"]  # of what the drive is: a length or degrees
+DrivePosition = Annotated[float, "position"]  # a length or degrees, by the kind of drive
 
 
 def shown_position(position_unit: str) -> dict[str, str]:
@@ -32,10 +32,12 @@ def shown_position(position_unit: str) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class PeakReaction:
-    """The largest force and the largest moment of a connection over a motion, between instants too.
+    """The largest force and the largest moment of a connection over a motion, also between
+    instants.
 
-    time, components, position: when the force is largest, its components and the drive's position.
-    frictionless: the largest force without friction, where there is friction.
+    time, components, position: the time of the largest force, its components and the drive's
+    position.
+    frictionless: the largest force without friction, where the linkage has friction.
     """
 
     connection: str
@@ -79,7 +81,8 @@ class ReactionTable:
     in world axes as columns, in space.
     position_unit: "deg" for a rotary drive; empty for a slider, whose position is a length.
     unresolved: the time intervals in which forces change too quickly for their peaks to be certain.
-    clause: what demands the loads of a case by a regulation; its sums are `wheel_loads`.
+    clause: the clause of a regulation that demands the loads of the case.
+    wheel_loads: the components from which these loads are computed.
     """
 
     case: str
@@ -111,7 +114,9 @@ class ReactionTable:
 
     @property
     def largest(self) -> tuple[PeakReaction, ...]:
-        """The largest reaction of every connection, over the motion or else over the instants."""
+        """The largest reaction of every connection, over the motion, or without one over the
+        instants.
+        """
         return self.peaks or tuple(self._sampled(c) for c in range(len(self.connections)))
 
     def _sampled(self, c: int) -> PeakReaction:
@@ -131,10 +136,10 @@ class ReactionTable:
 class DriveEffort:
     """The force or torque of a drive over a motion.
 
-    largest, time: largest magnitude and its time. mean, rms: over the motion.
-    power, power_time: largest magnitude of the power and its time.
-    stroke: between the extreme positions.
-    frictionless: the largest magnitude without friction, where there is friction.
+    largest, time: the largest magnitude and its time. mean, rms: over the motion.
+    power, power_time: the largest magnitude of the power and its time.
+    stroke: the distance between the extreme positions.
+    frictionless: the largest magnitude without friction, where the linkage has friction.
     """
 
     largest: Force
@@ -151,11 +156,12 @@ class DriveEffort:
 class DriveTable:
     """One drive along a motion, all (T,).
 
-    kind: a slider with length and force, or "rotary" with an angle in degrees, its rates in rad,
-    and a torque.
-    work, kinetic_energy, potential_energy: force x length; the energies are the whole linkage's.
-    effort: over the motion, between the instants too; None: over the instants alone.
     time: None for a case at one instant.
+    kind: "slider" with length and force, or "rotary" with an angle in degrees, its rates in rad,
+    and a torque.
+    work, kinetic_energy, potential_energy: force x length; the energies are those of the whole
+    linkage.
+    effort: over the motion, also between the instants; None: over the instants alone.
     """
 
     case: str
@@ -216,8 +222,11 @@ class DriveTable:
 class PublishedValue:
     """A published number compared with the computed one.
 
-    quantity, name: the quantity, and what it belongs to. time: None for a case as a whole.
-    published: in `unit`. reason: of the difference. dimension: of `ours`.
+    quantity, name: the quantity, and what it belongs to.
+    time: None for a case as a whole.
+    published: in `unit`.
+    reason: of the difference between them.
+    dimension: of `ours`.
     """
 
     case: str

@@ -1,4 +1,6 @@
-"""Results of motion: positions and their rates, powers, and what they are compared with."""
+"""Results of motion: positions with their rates, powers, and the values with which they are
+compared.
+"""
 
 from __future__ import annotations
 
@@ -23,15 +25,16 @@ from pinbase.dimensions import (
     Velocity,
 )
 
-MIN_TRANSMISSION_ANGLE = 40.0  # degrees; below it forces increase rapidly
+MIN_TRANSMISSION_ANGLE = 40.0  # degrees; at smaller angles forces increase rapidly
 
 
 @dataclass(frozen=True)
 class PowerLedger:
-    """The balance of powers, each (T,).
+    """The power balance, each term (T,).
 
-    drives, gravity, applied, friction: power put in; that of friction is never positive.
-    kinetic_rate: rate of the kinetic energy, which equals their sum.
+    drives, gravity, applied, friction: power put into the linkage; that of friction is never
+    positive.
+    kinetic_rate: rate of the kinetic energy, which ideally equals the sum of these.
     violation: the largest difference over the largest term.
     """
 
@@ -86,7 +89,7 @@ class PointPath:
 class PitchCurve:
     """The pitch circle of a gear (`round`) or the pitch line of a rack.
 
-    ends: (T, 2, 2), the centre and a point of the circle that turns with the gear, or the line's
+    ends: (T, 2, 2), of a circle its centre and a point that turns with the gear, of a line its
     ends.
     """
 
@@ -103,9 +106,10 @@ class PitchCurve:
 
 @dataclass(frozen=True)
 class AppliedForce:
-    """A force that a case applies to a body at a point of it.
+    """A force that a case applies to a body at a point of the body.
 
-    position, force: world axes, (T, 2), in space (T, 3); force also where it is across the plane.
+    position, force: world axes, (T, 2), in space (T, 3); the force also where it acts across the
+    plane.
     """
 
     body: str
@@ -120,11 +124,10 @@ class AppliedForce:
 
 @dataclass(frozen=True)
 class Posture:
-    """The transmission of the links of a linkage in one case, at T instants (one, without time,
-    when it is at rest).
+    """The transmission angles of a linkage in one case, at T instants (one, without time, at rest).
 
     transmission: by link and joint, (T,) degrees; 90 is best, 0 is a dead point.
-    extremes: over the motion, between the instants too; None: over the instants alone.
+    extremes: over the motion, also between the instants; None: over the instants alone.
     """
 
     case: str
@@ -146,11 +149,10 @@ class Posture:
 
 @dataclass(frozen=True)
 class SpacePosture(Posture):
-    """That of a linkage in space.
+    """The posture of a linkage in space.
 
-    condition, condition_time: largest condition number of its equations, and its time.
-    violation: the largest difference of the balance of powers over the largest power of a drive;
-    None at rest.
+    condition, condition_time: the largest condition number of its equations, and its time.
+    violation: the largest imbalance of powers over the largest power of a drive; None at rest.
     """
 
     condition: float
@@ -165,7 +167,7 @@ class SpacePosture(Posture):
 
 @dataclass(frozen=True)
 class LinkageMotion(Posture):
-    """The motion of a linkage in one case, at T instants (one, without time, when it is at rest).
+    """The motion of a linkage in one case, at T instants (one, without time, at rest).
 
     links: for each of B bodies the joints on it, in drawing order.
     centre, velocity, acceleration: (T, B, 2) of the centres of mass.
@@ -214,7 +216,7 @@ class LinkageMotion(Posture):
 
     @property
     def violation(self) -> float:
-        """The largest difference of the balance of powers over its largest term."""
+        """The largest imbalance of powers over the largest power in the balance."""
         return self.ledger.violation
 
     @property
@@ -230,7 +232,7 @@ class MotionCheck:
     """The magnitudes (T,) of a joint's speed and acceleration, from the linkage and in closed form.
 
     published: rows of time, published speed and acceleration in the study's units, and the computed
-    speed and acceleration at that time.
+    speed and acceleration at this time.
     """
 
     joint: str
@@ -245,10 +247,14 @@ class MotionCheck:
 
 @dataclass(frozen=True)
 class BodyMotion:
-    """Motion and momenta of a body in space, as seen from outside, along the mechanism's axes.
+    """The motion and momenta of a body in space, in a frame at rest outside, along the mechanism's
+    axes.
 
-    Vectors are (T, 3): the centre of mass with its rates; coriolis, the part of the acceleration by
-    which a turning ground deflects; rotation, momentum and angular momentum about the centre.
+    Vectors are (T, 3).
+    centre, velocity, acceleration: of the centre of mass.
+    coriolis: the part of the acceleration by which a turning ground deflects the body.
+    spin, spin_rate: rotation.
+    momentum, angular_momentum, and their rates: the latter about the centre of mass.
     """
 
     case: str

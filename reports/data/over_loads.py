@@ -1,4 +1,6 @@
-"""Dependence of a row's outcome on ranges of loads: of a landing, of the stiffness of links."""
+"""Dependence of a row's outcome on ranges of loads: those of a landing and of the stiffness of
+links.
+"""
 
 from __future__ import annotations
 
@@ -20,10 +22,12 @@ IMPULSE_RANGES_TOGETHER = "impulse time, velocity change and pulse together"
 
 @dataclass(frozen=True)
 class JudgedStress:
-    """A maximum stress and those by which its outcome is judged, all in one stress unit.
+    """A maximum stress and the stresses by which its outcome is judged, all in one unit.
 
-    low, high: the ends of its error. strength: yield strength.
-    permitted: the stress that the required factor permits. safe: the outcome as described.
+    low, high: the ends of its error.
+    strength: yield strength.
+    permitted: the stress that the required factor permits.
+    safe: the outcome as described.
     """
 
     low: float
@@ -36,8 +40,8 @@ class JudgedStress:
     def turns(self, stress: float, ends: tuple[float, float] | None = None) -> bool:
         """Return whether another maximum changes the outcome.
 
-        It has the same relative error, or its own ends. From fails to safe the change must be
-        certain; from safe to fails it suffices that it is possible.
+        The other maximum has the same relative error, or its own ends. A change from "fails" to
+        "safe" must be certain; for a change from "safe" to "fails" it suffices that it is possible.
         """
         low, high = ends or (stress * self.low / self.maximum, stress * self.high / self.maximum)
         return (high > self.permitted) if self.safe else (max(low, high) <= self.permitted)
@@ -46,8 +50,8 @@ class JudgedStress:
 def over_links(
     judged: JudgedStress, contact: ContactPlace | None, shared: SharingRange
 ) -> Iterator[Dependence]:
-    """Yield the stiffness of the links that changes the outcome, with stress beneath contact, which
-    scales too.
+    """Yield the stiffnesses of links that change the outcome, also by the stress beneath contact,
+    which scales with the maximum.
     """
     deep = contact.upper_end if contact else 0.0
     low, high = shared.max_von_mises
@@ -64,7 +68,8 @@ def over_links(
 def over_landings(
     judged: JudgedStress, contact: ContactPlace | None, r: LandingRange
 ) -> list[Dependence]:
-    """Return the dependences over a landing's range, with stress beneath contact, which scales too.
+    """Return the dependences over a landing's range, also by the stress beneath contact, which
+    scales with the maximum.
 
     A row that fails is safe at another value only if the stress beneath contact is safe, too.
     """
@@ -86,9 +91,11 @@ LandingAxis = tuple[str, str, Floats, float, Mask]
 
 
 def landing_axes(r: LandingRange) -> tuple[tuple[LandingAxis, LandingAxis], Mask]:
-    """Return impulse time and velocity change of a landing's range: name, dimension, values (P,),
-    that of the case, and the points (P,) that differ from it in nothing else; then the points
-    with its time and velocity.
+    """Return the axes of a landing's range, impulse time and velocity change, and a mask.
+
+    An axis: name, dimension, values (P,), the value of the case, and a mask (P,) of the points that
+    differ from the case in this quantity only. The last mask (P,) has the points with the time and
+    velocity change of the case.
     """
     time, velocity = (
         np.isclose(x, given)
@@ -139,7 +146,11 @@ def _nearest(values: Floats, given: float, which: Sequence[bool] | Floats) -> in
 
 
 def _between(judged: JudgedStress, one: tuple[float, float], other: tuple[float, float]) -> float:
-    """Return where the stress, a power law between two points, reaches the permitted one."""
+    """Return the value at which the stress, a power law through two points, reaches the permitted
+    one.
+
+    one, other: value and stress at each point.
+    """
     end = judged.high if judged.safe else judged.low
     wanted = judged.permitted * judged.maximum / end
     (x, a), (y, b) = one, other

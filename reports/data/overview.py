@@ -1,4 +1,6 @@
-"""The overview of a run: one line a pin, the cases that never govern, and estimated diameters."""
+"""The overview of a run: one line for each pin, the cases that never govern, and estimated
+diameters.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +19,18 @@ from reports.data.row import PinResult
 from reports.data.unknowns import Ends, factor_spread
 
 GOOD = (SAFE, BELOW_YIELD)
-MAX_LUG_SHARE = 0.75  # of the outer diameter of a lug, which leaves an eighth on each side
-NEAR_ENOUGH = 1.001  # scale of diameters up to which a pin stays as it is
+MAX_LUG_SHARE = 0.75  # pin over outer diameter of a lug; an eighth remains on each side
+NEAR_ENOUGH = 1.001  # a smaller scale of the diameters counts as no change
 
 
 @dataclass(frozen=True)
 class Diameter:
     """The diameter with which a pin reaches its factor, as estimated by the law of its section.
 
-    given: the largest of its bands, or of the pin without any.
-    needed: for the pin as described; whatever: over all that is open. None where given suffices,
-    or where none does.
-    eye: the outer diameter of its smallest lug, None without lugs.
+    given: the largest diameter of its bands, or of the pin if it has no bands.
+    needed: for the pin as described; None where the given diameter suffices or none does.
+    whatever: likewise, over all that is open.
+    eye: the outer diameter of its smallest lug; None without lugs.
     """
 
     given: float
@@ -45,9 +47,11 @@ class Diameter:
 class PinLine:
     """A pin in the overview.
 
-    row: its worst row. check: its worst check, which is of that row or another.
-    case: that of the check; "all cases" of one over several.
-    error: ends of the factor by the error of the maximum. spread: ends over all that is open.
+    row: its worst row.
+    check: its worst check, of this row or another.
+    case: the case of the check; "all cases" for a check over several.
+    error: the ends of the factor by the error of the maximum.
+    spread: the ends of the factor over all that is open.
     """
 
     row: PinResult
@@ -70,9 +74,10 @@ class PinLine:
 
 @dataclass(frozen=True)
 class QuietCase:
-    """A case in which all pins are safe, and that governs none that is not.
+    """A case in which all pins are safe and which governs no pin.
 
-    lowest: its row with the lowest factor; None if none has one.
+    pins: the number of pins.
+    lowest: the row with the lowest factor; None if no row has one.
     """
 
     case: str
@@ -81,15 +86,15 @@ class QuietCase:
 
 
 def pin_lines(results: Results) -> list[PinLine]:
-    """Return a line for each pin, the worst first; of a single pin, for each of its cases.
+    """Return a line for each pin, the worst first; for a single pin a line for each of its cases.
 
-    Of a pin with more than MAX_DETAILED_CASES only the worst case has a line.
+    A single pin with more than MAX_DETAILED_CASES cases has a line for the worst case only.
     """
     shapes = {shape.pin: shape for shape in results.shapes}
     worst = worst_checks(results)
     checks = list(worst.values())
     if len(worst) == 1 and len(results.pins) <= MAX_DETAILED_CASES:
-        # The first is the worst, of a case as of a check over all cases that is also required.
+        # In reversed order the worst check comes last, so the dictionaries keep it.
         judged = judged_checks(results)[::-1]
         by_case = {check.case: check for check in judged if check.case}
         over_all = {check.check: check for check in judged if not check.case}
@@ -128,7 +133,9 @@ def _used(row: PinResult, required: float) -> float:
 
 
 def _diameter(row: PinResult, shape: PinShape | None) -> Diameter | None:
-    """Return the diameter that a row needs; None where no law holds, or its outcome is open."""
+    """Return the diameter that a row needs; None where no law holds, or the outcome is
+    not decided.
+    """
     if shape is None or not row.safety_factor or row.verdict not in ("converged", "unconverged"):
         return None
     bands = [s[1] for s in shape.segments if s[4] == "band"]
@@ -141,12 +148,12 @@ def _diameter(row: PinResult, shape: PinShape | None) -> Diameter | None:
         return None
     scales = (_scale(row, whatever) for whatever in (False, True))
     needed, over_all = (given * scale if scale > NEAR_ENOUGH else None for scale in scales)
-    # Safe as described, beneath contact apart: as it is.
+    # A row that depends is safe as described, apart from stress beneath contact.
     return Diameter(given, None if row.outcome == DEPENDS else needed, over_all, eye)
 
 
 def diameter_law(row: PinResult) -> DiameterLaw:
-    """Return how the factors of a row, with its error, grow with all its diameters."""
+    """Return the law by which the factors of a row, with its error, grow with all its diameters."""
     factor, beneath = factor_ends(row)[0], beneath_factor(row)
     pressure = (
         max((band.mean_pressure for band in row.joint.bands), default=0.0) if row.joint else 0.0
@@ -156,9 +163,9 @@ def diameter_law(row: PinResult) -> DiameterLaw:
 
 
 def _scale(row: PinResult, whatever: bool) -> float:
-    """Return the scale at which a row reaches its factor.
+    """Return the scale of all diameters at which a row reaches its factor.
 
-    whatever: over all that is open.
+    whatever: whether over all that is open.
     """
     law, required = diameter_law(row), row.required or 1.0
     scale = law.scale(required)

@@ -1,4 +1,4 @@
-"""Probabilities of failure, and the factor of safety as a distribution."""
+"""Probabilities of failure, and the safety factor as a distribution."""
 
 from __future__ import annotations
 
@@ -8,12 +8,14 @@ from dataclasses import dataclass, field
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
 
-SYSTEM_ROW = "all"  # the pin and the case of the row for the lowest factor of all rows
+SYSTEM_ROW = "all"  # name of pin and case in the row for the lowest factor of all rows
 
 
 @dataclass(frozen=True)
 class Spread:
-    """A number with the ends of its confidence interval, infinite where samples do not bound it."""
+    """A number with the ends of its confidence interval; an end is infinite where samples do not
+    bound it.
+    """
 
     value: float
     low: float
@@ -24,7 +26,9 @@ class Spread:
         return self.high < other.low or other.high < self.low
 
     def or_narrower(self, weighted: Spread | None) -> Spread:
-        """Return the estimate by weighted samples if narrower and consistent, else this one."""
+        """Return the estimate by weighted samples if it is narrower and consistent with this one,
+        else this one.
+        """
         if weighted is None or weighted.apart(self) or weighted.value <= 0.0:
             return self
         surer = self.low <= 0.0 or (
@@ -35,7 +39,7 @@ class Spread:
 
 @dataclass(frozen=True)
 class Driver:
-    """The importance of a parameter for a factor of safety; None where it could not be determined.
+    """The importance of a parameter for a safety factor; None where it could not be determined.
 
     importance: squared direction cosine of the parameter at FORM's design point.
     first, total: first-order and total Sobol index of the factor's variance.
@@ -49,9 +53,11 @@ class Driver:
 
 @dataclass(frozen=True)
 class FirstOrder:
-    """The results of FORM; NaN with the reason `why` where it does not converge.
+    """The results of FORM; NaN where it does not converge, for the reason `why`.
 
-    index: reliability index. probability: of failure. quantile: of the factor.
+    index: reliability index.
+    probability: of failure.
+    quantile: of the factor.
     points: number of distinct design points.
     """
 
@@ -66,7 +72,7 @@ class FirstOrder:
 class ByErrors:
     """The probabilities of failure with all stresses changed by an error or a range of the model.
 
-    least, most: relative change of the stress; `least` is usually negative.
+    least, most: the relative changes of the stress; `least` is usually negative.
     lower, higher: the probabilities for `least` and `most`.
     """
 
@@ -78,24 +84,28 @@ class ByErrors:
 
 @dataclass(frozen=True)
 class Risk:
-    """Probability of failure of a pin in a case, or of the lowest factor of all rows (SYSTEM_ROW).
+    """The probability of failure of a pin in a case, or of the lowest factor of all rows
+    (SYSTEM_ROW).
 
-    verdict, factor: of the study as it is; None where it has no factor.
-    sampled, weighted: by plain and by importance sampling, None without a design point.
-    failures: of the plain samples. unknown: number of them without a result.
+    verdict, factor: of the nominal study; the factor is None where the study has none.
+    sampled, weighted: by plain and by importance sampling; `weighted` is None without a design
+    point.
+    failures: the number of plain samples that fail.
+    unknown: the number of plain samples without a result.
     quantile_sampled, quantile_weighted: the factor not reached with the stated probability.
-    mesh: by the estimated error of the stress. joint: by the range over the joint. None if unknown.
+    mesh: by the estimated error of the stress; None if unknown.
+    joint: by the range over the joint; None if unknown.
     beneath: the probability that the row fails or depends on the stress beneath contact, with its
-    error; None where that is never more than the row's own.
-    over_open: the probability that it fails, or depends on all that the study leaves open, at the
-    worst of it; None where nothing that has no law is open.
+    error; None where it never exceeds that of the row.
+    over_open: the probability that the row fails or depends, at the worst of all that the study
+    leaves open; None where everything open has a distribution.
     unbounded: the probability that the row fails or is singular, so that its factor is not known;
     None where no design is singular.
     loose: the probability that the pin is no longer pressed into a lug at the temperature of the
-    case; None where it is in all designs.
-    error_known: whether the error of the stress is, in the study as it is.
-    curve: of the distribution (factor, probability to be lower, by plain (0) or importance sampling
-    (1)).
+    case; None where it is pressed in all designs.
+    error_known: whether the error of the stress of the nominal study is known.
+    curve: the distribution as (factor, probability of a lower factor, 0 by plain or 1 by importance
+    sampling).
     """
 
     pin: str
@@ -147,12 +157,11 @@ class Risk:
     def result(self, allowed: float) -> str:
         """Return the outcome: whether the probability of failure is within the allowed one.
 
-        The interval with the error of the stress decides. A singular row cannot be safe, nor one
-        whose error is unknown, or that may fail or be singular with more than the allowed
-        probability. A row that is safe by
-        surface and section depends on the stress beneath contact, or on what is open, where the
-        probability with it may exceed the allowed one, and on what else retains the pin where it
-        comes loose more often.
+        The confidence interval with the error of the stress decides. A row cannot be safe if it is
+        singular, if its error is unknown, or if it may fail or be singular with more than the
+        allowed probability. A row that is safe by surface and section depends if the allowed
+        probability may be exceeded beneath contact, over what is open, or because the pin comes
+        loose.
         """
         ends = self.probability
         low, high = ends.low, ends.high
@@ -167,7 +176,9 @@ class Risk:
         return SAFE if high <= allowed else FAILS if low > allowed else NOT_DECIDED
 
     def depends_on(self, allowed: float) -> list[str]:
-        """Return, in words, what makes the probability of failure larger than the allowed one."""
+        """Return, in words, the reasons for which the probability of failure may exceed the allowed
+        one.
+        """
         deep = self.beneath is not None and self.beneath.high > allowed
         over_open = self.over_open is not None and self.over_open.high > allowed
         loose = self.loose is not None and self.loose.high > allowed
@@ -180,7 +191,7 @@ class Risk:
 
     @property
     def most(self) -> float:
-        """The larger of both probabilities."""
+        """The larger of the probabilities with and without the stress beneath contact."""
         return max(self.probability.value, self.beneath.value if self.beneath else 0.0)
 
 
@@ -188,10 +199,12 @@ class Risk:
 class Reliability:
     """The results of a study with random parameters.
 
-    limit: the factor of yield below which a pin fails.
+    limit: the safety factor against yield below which a pin fails.
     probability: the allowed one, for which the quantile of the factor is computed.
-    parameters: keys with their laws as text. correlations: as text.
-    solved: number of designs solved, by purpose. reasons: of failed designs, with their number.
+    parameters: keys with their distributions as text.
+    correlations: as text.
+    solved: number of designs solved, by purpose.
+    reasons: of failed designs, with their number.
     notes: sentences on what the probabilities do not include.
     """
 
@@ -216,5 +229,5 @@ class Reliability:
 
     @property
     def open(self) -> bool:
-        """Whether the study leaves something open that has no law."""
+        """Whether the study leaves something open that has no distribution."""
         return any(risk.over_open is not None for risk in self.risks)

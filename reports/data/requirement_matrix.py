@@ -8,18 +8,18 @@ from dataclasses import dataclass, field, replace
 from pinbase.grouped import grouped
 from reports.data.requirements import MET, NOT_CHECKED, OUTCOMES, RequirementRow, keys_in
 
-MAX_CASE_ROWS = 4  # rows of one requirement; of more cases, those that are all met share a row
+MAX_CASE_ROWS = 4  # rows of a requirement; with more cases, those met by all pins share a row
 
 
 @dataclass(frozen=True)
 class MatrixRow:
     """A requirement, or several together, on all pins.
 
-    check, level, case: of the requirement; the first names several checks.
+    check, level, case: of the requirement; `check` may name several checks.
     required: the factor; None where it differs.
-    cells: by pin its outcome, the worst of several; a pin without the requirement is left out.
-    needs: what is missing, where nothing of it was checked, with the checks that lack it; a key
-    without the pin, lug or material that has it.
+    cells: the outcome by pin, the worst of several; a pin without the requirement is left out.
+    needs: what is missing where nothing was checked, with the checks that lack it; keys are without
+    the pin, lug or material.
     """
 
     check: str
@@ -31,8 +31,10 @@ class MatrixRow:
 
 
 def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
-    """Return stated requirements, then the other checks that are not met, all others in one row,
-    and for each level what was not checked, stated or not, with what it needs.
+    """Return the stated requirements, then the other checks that are not met, then one row for all
+    others.
+
+    For each level a last row lists what was not checked, stated or not, with what is missing.
     """
     stated = _by_case(row for row in rows if row.stated)
     derived = [r for r in rows if not r.stated and r.outcome != NOT_CHECKED]
@@ -50,13 +52,13 @@ def matrix_rows(rows: Sequence[RequirementRow]) -> list[MatrixRow]:
 
 
 def _needs(rows: Iterable[RequirementRow]) -> dict[tuple[str, ...], list[str]]:
-    """Return the checks of rows by what they need."""
+    """Return the checks of rows, grouped by what they need."""
     bare = ((tuple(dict.fromkeys(map(_bare, keys_in(r.needs)))), r.check) for r in rows)
     return {k: [*dict.fromkeys(v)] for k, v in grouped(bare).items()}
 
 
 def _bare(key: str) -> str:
-    """Return the last part of a key, a table in brackets, and other words as they are."""
+    """Return the last part of a key, the name of a table in brackets, and other text unchanged."""
     name = key.rpartition(".")[2]
     return key if not name.isidentifier() else name if name != key else f"[{key}]"
 
@@ -73,7 +75,9 @@ def _case(rows: Sequence[RequirementRow]) -> str:
 
 
 def _by_case(rows: Iterable[RequirementRow]) -> list[MatrixRow]:
-    """Return a row for each requirement and case; of many cases, one for those that are met."""
+    """Return a row for each requirement and case; with many cases one row for all cases that are
+    met.
+    """
     matrix = []
     for (check, level), of_check in grouped(((r.check, r.level), r) for r in rows).items():
         by_case = [*grouped((r.case, r) for r in of_check).items()]

@@ -1,4 +1,6 @@
-"""Requirements of two runs side by side, read from their results.json, and which were lost."""
+"""Requirements of two runs side by side, read from their results.json, and which of them
+were lost.
+"""
 
 from __future__ import annotations
 
@@ -26,18 +28,18 @@ class RequirementPair:
 
     @property
     def row(self) -> RequirementRow:
-        """The requirement in the second run, or where that lacks it in the first."""
+        """The requirement in the second run, or in the first run if the second lacks it."""
         row = self.second or self.first
         assert row is not None
         return row
 
     @property
     def change(self) -> str:
-        """The verdict of a review on it, one of REQUIREMENT_CHANGES.
+        """The change between the runs, one of REQUIREMENT_CHANGES.
 
-        Lost is one that was met and no longer is, whatever the reason; gone one that is no longer
-        there, which is as bad, or no longer stated where nothing checks it, so that no run tells of
-        it. One that asks for less is no progress, whether or not it is met now.
+        A requirement is "lost" if it was met and no longer is, whatever the reason. It is "gone" if
+        the second run lacks it, or no longer states it and nothing checks it. A requirement whose
+        factor was lowered is no progress, whether or not it is met now.
         """
         a, b = self.first, self.second
         if a is None:
@@ -49,7 +51,7 @@ class RequirementPair:
             return LOST
         if a.stated and not b.stated and b.outcome == NOT_CHECKED:
             return GONE
-        if b.required < a.required:  # also where it is met only since then
+        if b.required < a.required:  # even if it is met only because of this
             return LOWERED
         if after and not before:
             return NEWLY_MET
@@ -59,9 +61,9 @@ class RequirementPair:
 def requirement_pairs(
     first: Mapping[str, Any], second: Mapping[str, Any]
 ) -> tuple[RequirementPair, ...] | None:
-    """Return the requirements of the contents of two results.json, what was lost first.
+    """Return the pairs of requirements in two results.json, the lost ones first.
 
-    None where one of them is of an earlier version, which lists none.
+    The result is None where one run is of an earlier version, which lists no requirements.
     """
     lists = first.get("requirements"), second.get("requirements")
     if lists[0] is None or lists[1] is None:
@@ -73,17 +75,19 @@ def requirement_pairs(
 
 
 def _counts(row: RequirementRow) -> bool:
-    """Return whether a requirement is missed when it is gone.
+    """Return whether the absence of a requirement in the second run is reported.
 
-    Those by the factors on loads come and go with the formulas that apply to a pin; of pins and
-    cases that the first run left out nothing was met.
+    Requirements by the factors on loads come and go with the formulas that apply to a pin.
+    Requirements on pins and cases that the first run left out were not met there.
     """
     by_factors = row.outcome == MET and row.check in REQUIRED_CHECKS and row.check != COLLAPSE
     return (row.stated and not row.left_out) or by_factors
 
 
 def _by_key(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], RequirementRow]:
-    """Return the requirements by pin, case, level and check; of several the worst."""
+    """Return the requirements by pin, case, level and check, the worst of those with the
+    same key.
+    """
     worst: dict[tuple[str, ...], RequirementRow] = {}
     for content in rows:
         row = RequirementRow(**{key: content[key] for key in ROW_KEYS})

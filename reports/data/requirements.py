@@ -1,7 +1,7 @@
 """Requirements of a run with what was reached: met, missed, depends, not decided or not checked.
 
-They are statements about checks that are made anyway: about the rows' maximum von Mises stress,
-and about the margins of safety. What was not checked is never met.
+Requirements refer to checks that are made anyway: the rows' maximum von Mises stress, and the
+margins of safety. A requirement that was not checked is never met.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from reports.data.row import PinResult
 
 MET, MISSED, NOT_CHECKED = "met", "missed", "not checked"
 Outcome = Literal["met", "missed", "depends", "not decided", "not checked"]
-# Of a row of results as a requirement; DEPENDS and NOT_DECIDED are those of rows.
+# The outcome of a requirement by that of its row; DEPENDS and NOT_DECIDED are the same.
 OUTCOME_OF_ROW: Mapping[str, Outcome] = {
     SAFE: "met",
     BELOW_YIELD: "met",
@@ -57,11 +57,13 @@ METHODS_OF_CHECK: Mapping[RequiredCheck, tuple[str, ...]] = {
 }
 CHECK_OF_METHOD = {m: check for check, methods in METHODS_OF_CHECK.items() for m in methods}
 
-LISTED_KEY = re.compile(rf"(?:^|, )((?:{QUOTED}|(?!, ).)+)")  # up to a comma outside of quotes
+LISTED_KEY = re.compile(rf"(?:^|, )((?:{QUOTED}|(?!, ).)+)")  # up to a comma outside quotes
 
 
 def keys_in(needs: str) -> list[str]:
-    """Return the keys of a list in words; a comma in quotes, in a name, does not end one."""
+    """Return the keys in a comma-separated list; a comma within a quoted name does not
+    end a key.
+    """
     found: list[str] = LISTED_KEY.findall(needs)
     return found
 
@@ -70,15 +72,15 @@ def keys_in(needs: str) -> list[str]:
 class RequirementRow:
     """A requirement on a pin in a case, with what was reached.
 
-    case: empty for a check over several cases, fatigue.
-    check: one of assess.requirement, or for other margins their method.
+    case: empty for a check over several cases (fatigue).
+    check: one of assess.requirement; for other margins their method.
     required, reached: allowable over demand under the loads of the study; `reached` is None where
     it is not known, and where there is no demand.
-    needs: what is missing where the requirement was not checked or not decided, as the key of the
-    study where that is a number.
-    stated: whether the study states it, by [[require]], required_safety_factor or fatigue.life;
-    otherwise it follows from the factors on loads.
-    over: of a check by margins that depends, what is open: "joint", "landing", "links", and of a
+    needs: what is missing where the requirement was not checked or not decided; for a number the
+    key of the study.
+    stated: whether the study states the requirement, by [[require]], required_safety_factor or
+    fatigue.life; otherwise it follows from the factors on loads.
+    over: what is open where a check by margins depends: "joint", "landing", "links", and for a
     limit load "strength".
     """
 
@@ -108,12 +110,14 @@ class RequirementRow:
 
     @property
     def left_out(self) -> bool:
-        """Whether only a choice of pins or cases keeps the run from checking it."""
+        """Whether the requirement was not checked only because a choice of pins or cases left it
+        out.
+        """
         return self.needs.endswith(TO_BE_RUN)
 
     @property
     def key(self) -> tuple[str, str, RequiredLevel, str]:
-        """The requirement and its place, without the factor."""
+        """The pin, case, level and check, without the factor."""
         return self.pin, self.case, self.level, self.check
 
 
@@ -121,10 +125,11 @@ Pair = tuple[str, str]  # pin, case
 
 
 def requirement_rows(results: Results) -> tuple[RequirementRow, ...]:
-    """Return all requirements: of pins in the order of the results, then by case and check.
+    """Return all requirements, by pin in the order of the results, then by case and check.
 
-    These are what the study states, and what follows from its factors on loads for every other
-    check that has a margin. Where a factor on loads demands more than is stated, both are there.
+    They are those that the study states, and for every other check with a margin those that follow
+    from the factors on loads. Where a factor on loads demands more than the stated requirement,
+    both are listed.
     """
     rows = {(row.pin, row.case): row for row in results.pins}
     margins = grouped(((m.pin, m.case), m.margin) for m in results.margins if m.margin.governs)
@@ -150,7 +155,9 @@ def requirement_rows(results: Results) -> tuple[RequirementRow, ...]:
 
 
 def _all_stated(results: Results, rows: Mapping[Pair, PinResult]) -> Iterator[StatedRequirement]:
-    """Yield the stated requirements and, for other rows, that on yield of the whole study."""
+    """Yield the stated requirements and, for all other rows, the study's required factor against
+    yield.
+    """
     yield from results.stated
     on_yield = {(s.pin, s.case) for s in results.stated if _replaces_default(s)}
     if results.required_safety_factor is not None:
@@ -175,7 +182,7 @@ def _stated(
         return plain
     level: Level = "ultimate" if s.level == "ultimate" else "limit"
     if s.check == "limit load":
-        level = "ultimate"  # at which the margin is, whose loads are those of the study
+        level = "ultimate"  # the level of its margin, although its loads are those of the study
     of_pair = margins.get((s.pin, s.case), [])
     methods = METHODS_OF_CHECK[s.check]
     chosen = [m for m in of_pair if m.method in methods and m.level == level]
@@ -195,7 +202,7 @@ def _not_made_by_formula(margin: Margin) -> bool:
 
 
 def _of_fatigue(plain: RequirementRow, results: Results, margins: list[Margin]) -> RequirementRow:
-    """Return a requirement on the life of a pin."""
+    """Return a requirement on the life of a pin with what was reached."""
     fatigue = results.fatigue
     if fatigue is None or not fatigue.life:
         return replace(plain, needs="fatigue" if fatigue is None else "fatigue.life")
@@ -213,10 +220,10 @@ def _of_fatigue(plain: RequirementRow, results: Results, margins: list[Margin]) 
 
 
 def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin]) -> RequirementRow:
-    """Return a requirement on the load at which a pin collapses.
+    """Return a requirement on the load at which a pin collapses, with what was reached.
 
     No pin collapses before it yields anywhere (the static theorem of limit analysis), so a factor
-    against yield is one against collapse, too.
+    against yield is also a factor against collapse.
     """
     if row.safety_factor is None:
         on_yield = [m for m in row.worst if m.method == YIELD_METHOD]
@@ -242,37 +249,42 @@ def _of_limit_load(plain: RequirementRow, row: PinResult, margins: list[Margin])
 def _assumed(
     pin: str, case: str, margins: Iterable[Margin], row: PinResult | None, results: Results
 ) -> Iterator[RequirementRow]:
-    """Yield what follows from the factors on loads: a requirement for each check and level."""
+    """Yield the requirements that follow from the factors on loads, one for each check
+    and level.
+    """
     groups = grouped(((m.level, CHECK_OF_METHOD.get(m.method, m.method)), m) for m in margins)
     for (level, check), same in groups.items():
         factor = max(same, key=lambda m: m.used).factor
         if check == "yield" and row is not None and factor <= (row.required or 0.0):
-            continue  # by what is stated, at limit or proof load
+            continue  # the stated requirement, at limit or proof load, includes it
         plain = RequirementRow(pin, case, level, check, factor, None, "not checked", stated=False)
         same = [_with_factor(m, factor) for m in same]
         if check == "fatigue":
-            yield replace(_of_fatigue(plain, results, same), stated=True)  # by fatigue.life
+            yield replace(_of_fatigue(plain, results, same), stated=True)  # by the key fatigue.life
         else:
             yield _judged(plain, same, row)
 
 
 def _with_factor(margin: Margin, factor: float) -> Margin:
-    """Return a margin with another factor on its demand and the same utilisation: the checks of
-    several codes each have the factor of their own.
+    """Return a margin with another factor on its demand and the same utilisation.
+
+    The checks of several codes have different factors; this refers them to one.
     """
     demand = margin.demand and margin.demand * (margin.factor / factor)
     return replace(margin, factor=factor, demand=demand)
 
 
 def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None) -> RequirementRow:
-    """Return a requirement as its margins have it, or the row's stress if it is of that."""
+    """Return a requirement judged by its margins, or by the stress of the row if it is on that
+    stress.
+    """
     if row is not None and row.max_von_mises == 0.0 and not margins:
-        return replace(plain, outcome="met")  # nothing acts on the pin, so that no formula applies
+        return replace(plain, outcome="met")  # no load acts on the pin, so no formula applies
     if plain.check not in ("yield", "rupture") or row is None:
         by_formula = _of_margins(plain, margins, row.most_loads if row else None)
-        return _beside_cuts(by_formula, margins, row)
+        return _with_cuts_omitted(by_formula, margins, row)
     hardened = row.places is not None and row.places.hardened
-    if hardened and plain.check == "rupture":  # its largest stress need not be the row's
+    if hardened and plain.check == "rupture":  # the row may be that of another place
         return _of_margins(plain, margins, {**row.most_loads, "joint": row.surface_growth})
     if row.max_von_mises is None:
         return replace(plain, outcome="not decided", needs=f"a maximum ({row.verdict})")
@@ -282,12 +294,13 @@ def _judged(plain: RequirementRow, margins: list[Margin], row: PinResult | None)
     return _of_stress(plain, row, strengths[0])
 
 
-def _beside_cuts(
+def _with_cuts_omitted(
     by_formula: RequirementRow, margins: list[Margin], row: PinResult | None
 ) -> RequirementRow:
     """Return a requirement whose formulas may leave out cuts of the pin.
 
-    Then they show what is missed, but not what is met, unless the stress of the model shows that.
+    Such formulas can show that the requirement is missed, but not that it is met, unless the stress
+    of the model shows it.
     """
     omitting = [m for m in margins if m.omits_cuts]
     if not omitting or by_formula.outcome not in (MET, DEPENDS):
@@ -302,11 +315,12 @@ def _beside_cuts(
 
 
 def _local_strength(margins: list[Margin], row: PinResult) -> float | None:
-    """Return the strength that the largest von Mises stress of a pin must not reach, so that checks
-    by formula are met in every section; None where the stress does not tell.
+    """Return the stress which the largest von Mises stress must not reach so that checks by formula
+    are met in every section.
 
-    Mean shear stress is at most that stress over the root of 3, bending stress at most that stress,
-    and no section is plastic before the pin yields anywhere (the static theorem).
+    The mean shear stress is at most the largest von Mises stress over the root of 3, the bending
+    stress at most this stress, and no section is plastic before the pin yields anywhere (the static
+    theorem). The result is None where the stress decides nothing.
     """
     methods = {m.method for m in margins}
     allowed = [m.allowable for m in margins if m.allowable is not None]
@@ -320,14 +334,14 @@ def _local_strength(margins: list[Margin], row: PinResult) -> float | None:
 def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> RequirementRow:
     """Return a requirement on the maximum stress of a row, judged like the row itself.
 
-    strength: that the stress must not reach, in the units of the row.
+    strength: the stress that must not be reached, in the units of the row.
     """
     if plain.check != "yield" or plain.required != (row.required or 1.0):
         judgement = against_yield(row.maximum, strength, plain.required)
         row = replace(row, judgement=judgement, depends_on=())
-        if plain.check != "yield":  # the row itself says that its pin comes loose
+        if plain.check != "yield":  # a loose pin is reported by the row itself
             row = replace(row, lost_fits=())
-        if plain.check == "rupture":  # by a strength without a range
+        if plain.check == "rupture":  # the ultimate strength has no range
             row = replace(row, strength_range=None)
         row = replace(row, depends_on=depends_on(row))
     outcome = OUTCOME_OF_ROW[row.outcome]
@@ -335,10 +349,11 @@ def _of_stress(plain: RequirementRow, row: PinResult, strength: float) -> Requir
 
 
 def _beyond(spare: float, growth: Mapping[str, float]) -> list[str]:
-    """Return what is open that takes a demand beyond what is allowed; nothing where all of it
-    together does not.
+    """Return the open properties that take a demand beyond what is allowed; empty if all together
+    do not.
 
-    spare: allowable over demand and required factor. growth: how much more the demand may be.
+    spare: allowable over demand and required factor.
+    growth: the most by which each property multiplies the demand.
     """
     if spare >= prod(growth.values()):
         return []
@@ -347,7 +362,9 @@ def _beyond(spare: float, growth: Mapping[str, float]) -> list[str]:
 
 
 def _depending(plain: RequirementRow, reached: float | None, over: Iterable[str]) -> RequirementRow:
-    """Return a requirement that is reached as described, but not over what is open, if anything."""
+    """Return a requirement that is reached as described; it depends if `over` names
+    anything open.
+    """
     words = " and ".join(dict.fromkeys(over))
     return replace(plain, reached=reached, outcome="depends" if words else "met", over=words)
 
@@ -355,11 +372,11 @@ def _depending(plain: RequirementRow, reached: float | None, over: Iterable[str]
 def _of_margins(
     plain: RequirementRow, margins: list[Margin], most_loads: Mapping[str, float] | None = None
 ) -> RequirementRow:
-    """Return a requirement with the least of what margins reach.
+    """Return a requirement with the least factor that its margins reach.
 
-    One that was not made leaves it unchecked, unless another misses it anyway. One that is reached
-    depends where it is not under the most load, to which the demand is taken to be in proportion,
-    or not over the uncertain properties of the joint.
+    A margin that was not computed leaves the requirement not checked, unless another margin misses
+    it. A requirement that is reached depends if it is not reached under the largest loads, to which
+    the demand is taken to be proportional, or over the uncertain properties of the joint.
     """
     if not margins:
         return replace(plain, needs=f"a force across pin {plain.pin}")
@@ -377,12 +394,12 @@ def _of_margins(
 
 
 def _reached(margin: Margin) -> float:
-    """Return the allowable over the demand, infinite without a demand."""
+    """Return the allowable over the demand; inf without a demand."""
     assert margin.demand is not None
     assert margin.allowable is not None
     return margin.allowable / margin.demand if margin.demand > 0.0 else inf
 
 
 def _needs(margins: Iterable[Margin]) -> str:
-    """Return all that margins need, each once."""
+    """Return all data that margins need, each once."""
     return ", ".join(dict.fromkeys(m.needs for m in margins if m.needs))

@@ -1,7 +1,7 @@
 """Results of a run, from which all reports are made.
 
-They are computed once, in SI; `Results.in_units` converts them to the units of a study, from which
-tables and pages are written.
+Results are computed once, in SI units; `Results.in_units` converts them to the units of a study for
+tables and pages.
 """
 
 from __future__ import annotations
@@ -29,13 +29,17 @@ from reports.data.wear import BandWear
 
 @dataclass(frozen=True)
 class CutShape:
-    """The shape of a cut for drawing; its name is, for instance, "hole 1".
+    """The shape of a cut for drawing.
 
-    z: its ends; of a hole its middle, twice. size: diameter or width; of a flat its distance from
-    the axis. offset: of a passage or hole from the axis. depth: None through the pin and for flats.
-    angle: from x, degrees. lines: points (z, x) of edges in the view from y, and whether hidden.
-    notches: (z, x) of two opposite corners of each piece cut from the silhouette. tilt: of a hole
-    towards z, degrees.
+    name: "hole 1", for instance.
+    z: the two ends; for a hole its middle, twice.
+    size: diameter or width; for a flat its distance from the axis.
+    offset: of a passage or hole from the axis.
+    depth: None for a cut through the pin and for flats.
+    angle: from x, degrees.
+    lines: points (z, x) of edges in the view from y, and whether hidden.
+    notches: (z, x) of two opposite corners of each piece cut from the silhouette.
+    tilt: of a hole towards z, degrees.
     """
 
     name: str
@@ -51,7 +55,7 @@ class CutShape:
 
 @dataclass(frozen=True)
 class ShankSketch:
-    """The outline of a lug beyond its eye; names as in fea.support.lugs.lug.Shank."""
+    """The outline of a lug beyond its eye; fields as in fea.support.lugs.lug.Shank."""
 
     shape: str
     width: Length
@@ -61,10 +65,13 @@ class ShankSketch:
 
 @dataclass(frozen=True)
 class LugSketch:
-    """A lug about a band of a pin, as it is drawn: from z to z, with its outer diameter.
+    """A lug on a band of a pin, for drawing.
 
-    clearance: of the diameters. edge_radius: of the bore's edges.
-    bushing: its thickness, 0 without one; interference: with which it was pressed in.
+    z: the two ends.
+    clearance: the difference of the diameters.
+    edge_radius: of the bore's edges.
+    bushing: thickness, 0 without a bushing.
+    interference: with which the bushing was pressed in.
     """
 
     connection: str
@@ -84,9 +91,9 @@ class PinShape:
 
     segments: (length, diameter, bore, label, kind) in order; kind is "band", "held" or "plain".
     weight: None without a density.
-    far_ends: diameter and bore at the segments' far ends, where any is a cone.
+    far_ends: diameter and bore at the segments' far ends, if any segment is a cone.
     solids: the ranges of z of local solids about cuts.
-    lugs: that support the pin, in the order of z.
+    lugs: the lugs that support the pin, in the order of z.
     """
 
     pin: str
@@ -101,9 +108,10 @@ class PinShape:
 
 @dataclass(frozen=True)
 class Provenance:
-    """The source of a number of the study: given, derived, fitted or assumed.
+    """The source of a number of the study.
 
-    value: as the study writes it, in the study's units where it has none.
+    kind: given, derived, fitted or assumed.
+    value: as the study writes it; in the study's units where it has no unit of its own.
     """
 
     key: str
@@ -116,10 +124,12 @@ class Provenance:
 class Fatigue:
     """The fatigue under a spectrum that states how often each case occurs per `unit`.
 
-    points: the worst first. probability: of failure, None for that of the S-N data.
-    life: for which pins are designed. left_out: sentences on what was not assessed.
+    points: the worst first.
+    probability: of failure; None for that of the S-N data.
+    life: the life for which pins are designed.
+    left_out: sentences on what was not assessed.
     not_decided: by pin, the reason why its damage is not known although its material has the data;
-    its points, if any, have at least their damage.
+    its points, if any, have at least the damage listed.
     """
 
     unit: str
@@ -144,18 +154,19 @@ class TitleBlock:
 
 
 class NoSuchRow(KeyError):
-    """A pin or case without results; the message says which there are."""
+    """A pin or case without results; the message lists those with results."""
 
     def __str__(self) -> str:
-        return str(self.args[0])  # that of KeyError is in quotes
+        return str(self.args[0])  # KeyError would put the message in quotes
 
 
 @dataclass(frozen=True)
 class Results:
-    """All results of a run, without the fields inside pins (those are written pin by pin).
+    """All results of a run except the fields inside pins, which are written pin by pin.
 
-    pins: the rows. stated: the requirements of [[require]].
-    space, space_postures: motions of linkages in space, and how well they transmit.
+    pins: the rows.
+    stated: the requirements of [[require]].
+    space, space_postures: the motions of linkages in space, and their postures.
     spectrum_margins: of checks over all cases of a pin, as fatigue.
     """
 
@@ -196,7 +207,7 @@ class Results:
     def __getitem__(self, row: tuple[str, str]) -> PinResult:
         """Return the result of a pin in a case: results["E", "landing"].
 
-        Raises: KeyError.
+        Raises: KeyError if there is none.
         """
         matches = [p for p in self.pins if (p.pin, p.case) == row]
         if not matches:
@@ -204,12 +215,14 @@ class Results:
         return matches[0]
 
     def __contains__(self, row: object) -> bool:
-        """Return whether a row, or a pin in a case, is there: ("E", "landing") in results."""
+        """Return whether the results contain a row, or a pin in a case: ("E", "landing") in
+        results.
+        """
         pair = (row.pin, row.case) if isinstance(row, PinResult) else row
         return any((p.pin, p.case) == pair for p in self.pins)
 
     def _missing(self, row: object) -> str:
-        """Return which row is missing, and the pins and cases that there are."""
+        """Return a message on the missing row, with the pins and cases that have results."""
         pins = ", ".join(dict.fromkeys(p.pin for p in self.pins))
         if not isinstance(row, tuple) or len(row) != 2:
             return f"results[{row!r}]: give a pin and a case; the pins are {pins}"
@@ -220,12 +233,12 @@ class Results:
 
     @property
     def skeletons(self) -> tuple[Skeleton, ...]:
-        """The parts of every motion that are drawn, planar or in space."""
+        """The parts to draw of every motion, planar or in space."""
         return (*map(planar_skeleton, self.motion), *self.space)
 
     @property
     def postures(self) -> tuple[LinkageMotion | SpacePosture, ...]:
-        """The transmission of every linkage, planar or in space."""
+        """The postures of every linkage, planar or in space."""
         return (*self.motion, *self.space_postures)
 
     @property
@@ -241,13 +254,13 @@ class Results:
 
     @property
     def landing(self) -> tuple[LandingRange, ...]:
-        """The results over the ranges of a landing's impulse of the rows that have them."""
+        """The landing ranges of the rows that have one."""
         return tuple(p.landing for p in self.pins if p.landing)
 
     def in_units(self, units: Units, unit: Unit) -> Self:
         """Return the same results in other units.
 
-        unit: their values in SI, by dimension.
+        unit: the SI value of each unit, by dimension.
         """
         pins = tuple(replace(pin, units=units) for pin in self.pins)
         return in_units(replace(self, units=units, pins=pins), unit)

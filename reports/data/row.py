@@ -58,19 +58,18 @@ class GoverningLoad:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A value given as a range or seldom known that changes the outcome of a row.
+    """A value that is given as a range, or seldom known, and changes the outcome of a row.
 
-    what: "clearance", "impulse time", "beneath". value: in words where it is not a number
-    ("guided").
-    over: the owner of the range, "joint", "landing", "links" (their stiffness), "strength" (of
-    yield), or those of ranges that only together change the outcome ("joint and links"), or
-    "beneath" for the stress beneath contact as the study has it;
-    for that stress over a range, `value` is what changes ("clearance").
-    "press fit" for a pin that comes loose, `value` being where.
-    factor: of safety at that value.
-    given, at, flips_at: the study's value, one at which the outcome differs, and the interpolated
-    one at which it changes, of `dimension`; None where it is not a number.
-    reach: depth below pressed cells at which the stress exceeds the permitted one.
+    what: "clearance", "impulse time", "beneath".
+    value: in words where it is not a number ("guided"); the variation ("clearance") for the stress
+    beneath contact over a range; the lugs for a pin that comes loose.
+    over: the owner of the range: "joint", "landing", "links" (their stiffness) or "strength"
+    (yield); several of these if only together they change the outcome ("joint and links");
+    "beneath" for the stress beneath contact as described; "press fit" for a pin that comes loose.
+    factor: the safety factor at this value.
+    given, at, flips_at: the value of the study, a value at which the outcome differs, and the
+    interpolated value at which it changes, of `dimension`; None where it is not a number.
+    reach: depth below pressed cells to which the stress exceeds the permitted one.
     """
 
     what: str
@@ -90,9 +89,11 @@ class LandingRange:
 
     impulse_time, velocity_change, force, max_von_mises: (P,). pulses: (P,).
     safety_factor: (P,), None without a yield strength.
-    nominal, nominal_pulse: of the case itself. verdict: of the case, valid for all points.
+    nominal, nominal_pulse: of the case itself.
+    verdict: of the case, valid for all points.
     spread: for a `singular` verdict the ends of the interval of the factor, over the factor.
-    largest_load: the most by which a demand grows, as a force on a band or the stress, at least 1.
+    largest_load: the largest ratio by which a demand (a force on a band, or the stress) grows, at
+    least 1.
     """
 
     pin: str
@@ -113,10 +114,11 @@ class LandingRange:
 
 @dataclass(frozen=True)
 class SharingRange:
-    """The range of a maximum over the stiffness of links that share what statics leaves open.
+    """The range of a maximum over the stiffness of links in a statically indeterminate linkage.
 
-    max_von_mises: its ends. lowest, highest: what is different there; empty where it is the row's.
-    largest_load: as of a landing's range.
+    max_von_mises: the two ends.
+    lowest, highest: what differs from the study there; empty where the end is the row's own value.
+    largest_load: as in LandingRange.
     """
 
     max_von_mises: tuple[Stress, Stress]
@@ -130,26 +132,26 @@ class PinResult:
     """A row of the results: one pin in one case. Numbers are None for `rigid` and `failed`.
 
     maximum: the maximum stress, with its error and verdict.
-    judgement: of that maximum against yield.
+    judgement: of this maximum against yield.
     joint: contact with the lugs at the governing instant, if lugs support the pin.
-    limit_load: past yield, if requested; lug_collapses: of lugs, if requested.
+    limit_load: of the pin past yield, if requested. lug_collapses: of lugs, if requested.
     landing: the results over the ranges of a landing's impulse, if it has any.
-    sharing: the range over the stiffness of links, where they share what statics leaves open.
-    strength_range: between which the yield strength may lie, where the study states it.
-    margins: of every check at every place and level; worst: the worst place of each that counts.
-    arms: of the bending moment, None where the formulas do not apply.
+    sharing: the range over the stiffness of links, if the linkage is statically indeterminate.
+    strength_range: the ends of the yield strength, where the study states them.
+    margins: of every check at every place and level. worst: the worst place of each that counts.
+    arms: of the bending moment; None where the formulas do not apply.
     second_opinion: of CalculiX, if any.
     held: the supports of the pin, in words.
     left_out: given forces that were not applied because their band is clamped.
-    position: of the drive; position_unit: as in ReactionTable.
+    position: of the drive. position_unit: as in ReactionTable.
     loads: at the governing instant.
     shank_angles: of its lugs at the governing instant, by connection, degrees from x.
-    exponent: with which the factor grows with the diameters, by the law of the section
+    exponent: of the diameters in the safety factor, by the law of the section
     (assess.diameter_law).
     depends_on: values within the study's ranges that change whether the maximum is permitted.
-    lost_fits: lugs in which the pin is pressed no longer at the temperature of the case.
+    lost_fits: lugs into which the pin is no longer pressed at the temperature of the case.
     published_*: the publication's value, in the study's units.
-    units: of its numbers.
+    units: of the numbers.
     """
 
     maximum: Maximum
@@ -179,19 +181,19 @@ class PinResult:
 
     @property
     def joint_growth(self) -> float:
-        """The most by which the stress of the pin grows over the range of the joint."""
+        """The largest ratio by which the stress of the pin grows over the range of the joint."""
         over = self.joint.range if self.joint else None
         return 1.0 if over is None else over.growth(self.max_von_mises)
 
     @property
     def surface_growth(self) -> float:
-        """The same, also of the surface's stress where a section governs."""
+        """The same ratio, including the stress of the surface where a section governs."""
         over = self.joint.range if self.joint else None
         return 1.0 if over is None else max(self.joint_growth, over.surface)
 
     @property
     def most_loads(self) -> dict[str, float]:
-        """The most that a demand grows over the ranges of a landing and of the stiffness of
+        """The largest ratios by which a demand grows over a landing and over the stiffness of
         links.
         """
         over = {"landing": self.landing, "links": self.sharing}
@@ -243,7 +245,7 @@ class PinResult:
 
     @property
     def max_von_mises(self) -> float | None:
-        """The largest von Mises stress: of surface and section, outside of singular zones."""
+        """The largest von Mises stress of surface and section, outside the excluded zones."""
         return self.maximum.max_von_mises
 
     @property
@@ -258,7 +260,7 @@ class PinResult:
 
     @property
     def error_parts(self) -> dict[str, float]:
-        """The stresses of which the error is the sum, by source: mesh, time, .."""
+        """The stresses whose sum is the error, by source: mesh, time, ..."""
         return {} if self.maximum.parts is None else asdict(self.maximum.parts)
 
     @property
@@ -288,7 +290,7 @@ class PinResult:
 
     @property
     def dofs(self) -> int:
-        """The unknowns of the finest mesh."""
+        """The number of unknowns of the finest mesh."""
         return self.maximum.dofs
 
     @property
@@ -298,12 +300,14 @@ class PinResult:
 
     @property
     def safety_factor(self) -> float | None:
-        """The factor of safety against yield; None without a yield strength or a stress."""
+        """The safety factor against yield; None without a yield strength or a stress."""
         return self.judgement.safety_factor
 
     @property
     def safety_factor_interval(self) -> tuple[float, float | None] | None:
-        """The factors over the interval of the maximum; the upper one None if it has no bound."""
+        """The safety factors over the interval of the maximum; the upper one is None if it has no
+        bound.
+        """
         return self.judgement.interval
 
     @property
@@ -313,13 +317,13 @@ class PinResult:
 
     @property
     def required(self) -> float | None:
-        """The required factor of safety, None where none is required."""
+        """The required safety factor; None where none is required."""
         return self.judgement.required
 
     @property
     def decided(self) -> bool | None:
-        """Whether the pin as described meets the required factor, or does not yield where none is
-        required; None where the error leaves that open.
+        """Whether the pin as described meets the required factor, or if none is required does not
+        yield; None where the error leaves that open.
         """
         return self.judgement.decided
 
@@ -341,12 +345,12 @@ class PinResult:
 
     @property
     def hand_checks(self) -> tuple[Margin, ...]:
-        """The nominal stresses by hand against yield, each at all of its places."""
+        """The hand checks of nominal stress against yield, each at all of its places."""
         return tuple(margin for margin in self.margins if margin.listed_by_hand)
 
     @property
     def yield_strength(self) -> float | None:
-        """The yield strength of the material; None where it has none, or the row has no stress."""
+        """The yield strength of the material; None if it has none, or the row has no stress."""
         if self.safety_factor is None or not self.max_von_mises:
             return None
         return self.safety_factor * self.max_von_mises

@@ -1,4 +1,4 @@
-"""Sensitivities of a pin's maximum stress and factor of safety to the parameters of the study."""
+"""Sensitivities of a pin's maximum stress and safety factor to the parameters of the study."""
 
 from __future__ import annotations
 
@@ -13,9 +13,12 @@ class Sensitivity:
     """The derivatives with respect to one parameter.
 
     key: of the study ("pin.B.fillet"), or "force B x" for a load in the axes of the pin.
-    kind: dimension of the parameter ("length", "force", .., "1"). value: of the parameter.
-    stress: derivative of the maximum. factor: of the factor of safety, None without a strength.
-    step: a small increase of the parameter. factor_with_step: the factor then, by the derivative.
+    kind: dimension of the parameter ("length", "force", .., "1").
+    value: of the parameter.
+    stress: derivative of the maximum.
+    factor: derivative of the safety factor; None without a strength.
+    step: a small increase of the parameter.
+    factor_with_step: the safety factor after this step, by the derivative.
     """
 
     key: str
@@ -28,7 +31,7 @@ class Sensitivity:
 
     @property
     def dimension_of(self) -> dict[str, str]:
-        """The dimensions of this parameter (pinbase.records.in_units)."""
+        """The dimensions of the parameter and of the derivatives (pinbase.records.in_units)."""
         plain = self.kind == "1"
         return {
             "parameter": self.kind,
@@ -45,7 +48,7 @@ class PinSensitivities:
     tied_places, tied_times: places (r, z) and times whose stress is within the error of the
     maximum, so that they may govern after a small increase of a parameter.
     without: keys of dimensions that have no derivative, and the reason.
-    changing: number of cells of contact about to open or close, which makes derivatives one-sided.
+    changing: number of contact cells about to open or close, which makes derivatives one-sided.
     note: the reason why there are no derivatives.
     """
 

@@ -1,4 +1,4 @@
-"""The skeleton of a linkage in space: what its drawings and its animation show of a motion."""
+"""The skeleton of a linkage in space: the parts of a motion that drawings and animations show."""
 
 from __future__ import annotations
 
@@ -11,12 +11,16 @@ from pinbase.dimensions import Floats, Lengths, Moments, Times
 from reports.data.motion import AppliedForce, LinkageMotion, PitchCurve
 
 Vector = tuple[float, float, float]
-MIN_LEVER = 1e-6  # of the linkage's size: a load is nearer to its joint than round-off
+MIN_LEVER = 1e-6  # of the linkage's size; a smaller distance from load to joint is round-off
 
 
 @dataclass(frozen=True)
 class AppliedCouple:
-    """A couple that a case applies to a body, drawn at a point (T, 3); world axes, (T, 3)."""
+    """A couple that a case applies to a body, in world axes.
+
+    position: the point (T, 3) at which the couple is drawn.
+    couple: (T, 3).
+    """
 
     body: str
     position: Lengths
@@ -30,15 +34,16 @@ class AppliedCouple:
 
 @dataclass(frozen=True)
 class Skeleton:
-    """The bodies, joints and loads of a linkage at T instants (one, without time, when at rest).
+    """The bodies, joints and loads of a linkage at T instants (one, without time, at rest).
 
-    links: for each of B bodies the joints on it, in drawing order. centre: (T, B, 3), of mass.
+    links: for each of B bodies the joints on it, in drawing order.
+    centre: (T, B, 3), of mass.
     stems: bodies that are drawn from their only joint to their centre of mass.
     joints: J names. ground: joints that are fixed. position: (T, J, 3).
     axes: (T, J, 3), unit vectors along the pins; zero where a joint has no axis.
-    slides: by slider, its two ends (T, 2, 3). springs: likewise, of those between two points.
+    slides: by slider, its two ends (T, 2, 3). springs: by spring between two points, likewise.
     connections: (name, body, joint) in the order of the case's ReactionTable.
-    paths: of named points, (T, 3). applied, couples: of the case's loads, (T, 3).
+    paths: of named points, (T, 3). applied, couples: the case's loads, (T, 3).
     aside: the loads across the plane of a planar linkage.
     pitch: curves of gears and racks, (T, 2, 3), in the x-y plane.
     up: the vertical of the drawings, along one of the axes.
@@ -73,12 +78,15 @@ class Skeleton:
 
     @property
     def forces(self) -> tuple[AppliedForce, ...]:
-        """The forces, those across the plane last."""
+        """The forces; those across the plane come last."""
         return (*self.applied, *self.aside)
 
     def lever(self, load: AppliedForce, k: int) -> int | None:
-        """Return the number of the joint by which a force is joined to its body, the nearest at an
-        instant; None for a force at a joint, and on a floating pin, which is not drawn as a body.
+        """Return the index of the joint on the loaded body that is nearest to a force at instant k,
+        to which the force is drawn connected.
+
+        The result is None for a force at a joint, and for a force on a floating pin, which is not
+        drawn as a body.
         """
         on_body = self.links[self.bodies.index(load.body)] if load.body in self.bodies else ()
         joints, places = [self.joints.index(name) for name in on_body], self.position[k]

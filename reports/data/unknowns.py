@@ -1,4 +1,4 @@
-"""The values that a study leaves open, and how far the factor of a pin spreads over them."""
+"""The values that a study leaves open, and the range of a pin's factor over them."""
 
 from __future__ import annotations
 
@@ -15,19 +15,21 @@ from reports.data.row import Dependence, LandingRange, PinResult
 
 Owner = Literal["joint", "landing", "links", "strength"]
 Ends = tuple[float, float]
-LINK_STATES = ("times 0.1", "times 10")  # over which links without a stated stiffness are taken
-NO_SPREAD = 1.005  # ratio of factors up to which a value does not matter: 0.5 %
+LINK_STATES = ("times 0.1", "times 10")  # range of the stiffness of links where it is not stated
+NO_SPREAD = 1.005  # up to this ratio of factors (0.5 %) a value does not matter
 
 
 @dataclass(frozen=True)
 class OpenValue:
-    """A value that is open, and the factors of a row over it, all other values as described.
+    """A value that is open, and the factors of a row over it, with all other values as described.
 
-    what: "impulse time", "clearance". owner: of its range.
-    ends: the smallest and the largest value, of `dimension`, or none; states: others, in words.
-    given: the value of the study, a number or a state, None where it has none.
-    low, high: ends of the factor, at the row's own value too.
-    flips: what changes the row's outcome; None if nothing does.
+    what: "impulse time", "clearance".
+    owner: of its range.
+    ends: the smallest and the largest value, of `dimension`, if any.
+    states: values in words.
+    given: the value of the study, a number or a state; None where it has none.
+    low, high: the ends of the factor, including that at the row's own value.
+    flips: the value that changes the row's outcome; None if none does.
     """
 
     what: str
@@ -50,7 +52,7 @@ class OpenValue:
 class Unknown:
     """An open value over all rows.
 
-    rows: the rows that it concerns, each with its factors.
+    rows: the rows with this value, each with its factors.
     """
 
     rows: tuple[tuple[PinResult, OpenValue], ...]
@@ -62,19 +64,21 @@ class Unknown:
 
     @property
     def flipped(self) -> list[tuple[PinResult, Dependence]]:
-        """The rows whose outcome it changes, and at which value."""
+        """The rows whose outcome the value changes, each with the dependence."""
         return [(row, value.flips) for row, value in self.rows if value.flips]
 
     @property
     def largest(self) -> tuple[PinResult, OpenValue]:
-        """The row whose factor changes most, one that may lose all its stress last: its factor is
-        infinite then, which says nothing on the others.
+        """The row whose factor changes most.
+
+        A row that may lose all its stress comes last: its factor may be infinite, which says
+        nothing about the other rows.
         """
         return max(self.rows, key=lambda x: (math.isfinite(x[1].ratio), x[1].ratio))
 
     @property
     def ratio(self) -> float:
-        """The largest ratio of factors of a row over its range."""
+        """The largest ratio of factors of any row over the range of the value."""
         return self.largest[1].ratio
 
     @property
@@ -85,15 +89,15 @@ class Unknown:
 
     @property
     def states(self) -> list[str]:
-        """The states that are no numbers, each once."""
+        """The values in words, each once."""
         return list(dict.fromkeys(state for _, value in self.rows for state in value.states))
 
 
 def decided_by(unknown: Sequence[Unknown]) -> dict[Owner, list[str]]:
-    """Return the pins whose outcome changes within the joint, the landing, the links or the
-    strength, most pins first.
+    """Return the pins whose outcome changes within the range of the joint, the landing, the links
+    or the strength, by owner of the range, most pins first.
 
-    Values that only together change an outcome count too.
+    Values that change an outcome only together count for each of their owners.
     """
     rows = {(row.pin, row.case): row for each in unknown for row, _ in each.rows}.values()
     owners: dict[Owner, list[str]] = {"landing": [], "joint": [], "links": [], "strength": []}
@@ -104,14 +108,16 @@ def decided_by(unknown: Sequence[Unknown]) -> dict[Owner, list[str]]:
 
 
 def unknowns(rows: Iterable[PinResult]) -> list[Unknown]:
-    """Return what is open: first what changes the outcomes of most rows, then by its effect."""
+    """Return the open values: those that change the outcomes of most rows first, then by their
+    effect.
+    """
     by_name = grouped((value.what, (row, value)) for row in rows for value in open_values(row))
     every = [Unknown(tuple(values)) for values in by_name.values()]
     return sorted(every, key=lambda u: (-len(u.flipped), -u.ratio))
 
 
 def open_values(row: PinResult) -> Iterator[OpenValue]:
-    """Yield the values that are open for a row; none without a factor."""
+    """Yield the values that are open for a row; none if the row has no factor."""
     if not row.safety_factor or not row.max_von_mises:
         return
     if row.landing is not None:
@@ -133,7 +139,7 @@ def open_values(row: PinResult) -> Iterator[OpenValue]:
 def factor_spread(row: PinResult) -> Ends | None:
     """Return the ends of a row's factor over all that is open together, without its error.
 
-    Ratios over the joint, the landing, the links and the strength multiply.
+    The ratios over the joint, the landing, the links and the strength are multiplied. The result is
     None where nothing is open, or the row has no factor.
     """
     factor, stress = row.safety_factor, row.max_von_mises
@@ -191,7 +197,7 @@ def _of_joint(row: PinResult) -> Iterator[OpenValue]:
         ends = [v.length for v in here if v.length is not None]
         ends += [given] if ends and given is not None else []
         stresses = [s for v in here for s in v.interval or (v.max_von_mises,)]
-        if what == FRICTION:  # what it takes off the stress is not relied on
+        if what == FRICTION:  # a reduction of stress by friction is not relied on
             stresses = [max(stresses)]
         low, high = _factors(row, stresses)
         yield OpenValue(
@@ -202,19 +208,21 @@ def _of_joint(row: PinResult) -> Iterator[OpenValue]:
 
 
 def _factors(row: PinResult, stresses: Sequence[float]) -> Ends:
-    """Return the ends of the factor over some maxima and that of the row."""
+    """Return the ends of the factor over given maxima and the maximum of the row."""
     every = [*stresses, row.max_von_mises or 0.0]
     strength = row.yield_strength or 0.0
     return strength / max(every), _divided(strength, min(every))
 
 
 def _divided(factor: float, least: float) -> float:
-    """Return a factor over the least stress, infinite where that is zero."""
+    """Return a number over the least stress; inf where the stress is zero."""
     return float(factor / least) if least > 0.0 else math.inf
 
 
 def _flip(row: PinResult, owner: Owner, what: str) -> Dependence | None:
-    """Return the dependence of a row's outcome on an open value, the maximum's first."""
+    """Return the dependence of a row's outcome on an open value; that of the maximum comes before
+    that of stress beneath contact.
+    """
     for d in sorted(row.depends_on, key=lambda d: d.what == BENEATH_CONTACT):
         named = d.value if d.what == BENEATH_CONTACT else d.what
         if d.over == owner and (named == what or named.startswith(f"{what} ")):

@@ -1,1 +1,1 @@
-"""A results folder as a neighbour's: what is in it may be damaged, or meant to mislead."""
+"""A results folder from elsewhere: its files may be damaged, or made to mislead."""

@@ -1,4 +1,4 @@
-"""JSON and compressed texts of files that may be damaged; errors say what is wrong, and where."""
+"""JSON and compressed texts of files that may be damaged; errors state what is wrong, and where."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from loads import MB
 from pinbase.errors import Damaged
 
 Model = TypeVar("Model", bound=BaseModel)
-# Of a character beyond the first 65,536
+# Half of a character beyond the first 65,536
 SURROGATE_ESCAPE_PATTERN = re.compile(r"\\u[dD][89a-fA-F]")
 
-MAX_JSON_DEPTH = 100  # parts in parts; pinstress writes no more than twenty
-ERROR_WORDS = {  # of pydantic's errors, which speak of Python
+MAX_JSON_DEPTH = 100  # levels of nesting; pinstress writes at most twenty
+ERROR_WORDS = {  # replace pydantic's messages, which speak of Python
     "missing": "is missing",
     "model_type": "is not an object",
     "dict_type": "is not an object",
@@ -39,13 +39,13 @@ class JsonPart(BaseModel):
 def strict_json(content: bytes, name: str) -> Any:
     """Return the values of a JSON text.
 
-    Raises: Damaged.
+    Raises: Damaged if the text is not valid JSON, or is nested too deeply.
     """
     try:
         text = content.decode("utf-8")
         values = json.loads(text, parse_constant=_no_number)
         _require_shallow(values)
-        if SURROGATE_ESCAPE_PATTERN.search(text):  # may be lone, which no file can be written with
+        if SURROGATE_ESCAPE_PATTERN.search(text):  # a lone surrogate cannot be written to a file
             json.dumps(values, ensure_ascii=False).encode()
     except UnicodeDecodeError as error:
         raise Damaged(f"{name} is damaged: no UTF-8 from byte {error.start:,} on") from None
@@ -58,15 +58,15 @@ def strict_json(content: bytes, name: str) -> Any:
         raise Damaged(f"{name} is damaged: it is nested too deeply") from None
     except _NoNumber as error:
         raise Damaged(f"{name} is damaged: it has {error}, which is no number") from None
-    except ValueError:  # of int()
+    except ValueError:  # raised by int()
         raise Damaged(f"{name} is damaged: it has a number of thousands of digits") from None
     return values
 
 
 def _require_shallow(value: Any) -> None:
-    """Check that values are not nested too deeply for what walks or copies them later.
+    """Check that values are not nested too deeply for functions that walk or copy them later.
 
-    Raises: RecursionError.
+    Raises: RecursionError if they are.
     """
     level = [value]
     for _ in range(MAX_JSON_DEPTH):
@@ -90,9 +90,9 @@ def _no_number(text: str) -> NoReturn:
 
 
 def validated(kind: type[Model], content: Any, name: str) -> Model:
-    """Return the parts of a JSON text that are used.
+    """Return the parts of a JSON text that are used, as a model.
 
-    Raises: Damaged, naming the wrong part.
+    Raises: Damaged, with the name of the wrong part.
     """
     try:
         return kind.model_validate(content)
@@ -108,9 +108,9 @@ def validated(kind: type[Model], content: Any, name: str) -> Model:
 
 
 def inflated(packed: bytes | str, most: int, name: str) -> bytes:
-    """Return the bytes packed by base64 and zlib.
+    """Return the bytes packed by zlib and base64.
 
-    Raises: Damaged, also for more than `most` bytes, which are never unpacked.
+    Raises: Damaged, also if there are more than `most` bytes, which are never unpacked.
     """
     unpack = zlib.decompressobj()
     try:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from loads import MB
 
-PARTIAL_SUFFIX = ".partial"  # of a file that is being written
+PARTIAL_SUFFIX = ".partial"  # end of the name of a file that is being written
 SUPPORTS_DIR_FD = {os.open, os.stat, os.unlink, os.mkdir, os.rename} <= os.supports_dir_fd
 
 
@@ -30,7 +30,7 @@ DIRECTORY_FLAGS = os.O_RDONLY | _flags("O_DIRECTORY", "O_CLOEXEC")
 
 
 class NotPlain(OSError):
-    """An entry of a folder that is neither a regular file nor a folder; the text names it."""
+    """An entry of a folder that is neither a regular file nor a folder; the message names it."""
 
     def __str__(self) -> str:
         return str(self.strerror)
@@ -48,9 +48,10 @@ class _Place:
 
 
 def read_inside(folder: Path, name: str, most: int) -> bytes:
-    """Return the content of a file, given its path in the folder with slashes.
+    """Return the content of a file, given its path inside the folder with slashes.
 
-    Raises: NotPlain, FileNotFoundError, OSError; also for a file of more than `most` bytes.
+    Raises: NotPlain, FileNotFoundError, OSError; NotPlain also for a file of more than `most`
+    bytes.
     """
     with _place(folder, name) as (place, last):
         _require_file(place, last, name, most)
@@ -60,7 +61,7 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
             if not stat.S_ISREG(status.st_mode):
                 raise _not_plain(name, status.st_mode)
             content = file.read(most + 1)
-    if len(content) > most:  # it is growing
+    if len(content) > most:  # the file has grown since its size was checked
         raise _too_large(name, most)
     return content
 
@@ -68,7 +69,9 @@ def read_inside(folder: Path, name: str, most: int) -> bytes:
 def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
     """Write a file by way of NAME.partial, so that it is either complete or unchanged.
 
-    Its own folder is made. A file of that name that is not regular is left alone.
+    Missing folders on its path are made. An existing entry of that name that is not a regular file
+    is left alone.
+
     Raises: NotPlain, OSError.
     """
     with _place(folder, name, make=True) as (place, last):
@@ -76,7 +79,7 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
             with suppress(FileNotFoundError):
                 _require_file(place, entry, name + entry[len(last) :])
         at, partial = place.descriptor, place.of(last + PARTIAL_SUFFIX)
-        with suppress(FileNotFoundError):  # of a process that was killed
+        with suppress(FileNotFoundError):  # left by a process that was killed
             os.unlink(partial, dir_fd=at)
         try:
             with open(os.open(partial, CREATE_FLAGS, 0o666, dir_fd=at), "wb") as file:
@@ -89,9 +92,9 @@ def write_inside(folder: Path, name: str, content: bytes | memoryview) -> None:
 
 
 def is_inside(folder: Path, name: str) -> bool:
-    """Return whether a folder has such a file or folder.
+    """Return whether a folder contains a file or folder of this name.
 
-    Raises: NotPlain where it is something else.
+    Raises: NotPlain if the entry is something else.
     """
     with suppress(FileNotFoundError), _place(folder, name) as (place, last):
         status = os.stat(place.of(last), dir_fd=place.descriptor, follow_symlinks=False)
@@ -105,7 +108,8 @@ def is_inside(folder: Path, name: str) -> bool:
 def _place(folder: Path, name: str, make: bool = False) -> Iterator[tuple[_Place, str]]:
     """Yield the folder that contains a file, and the file's own name.
 
-    make: whether missing folders are made.
+    make: whether to make missing folders.
+    Raises: NotPlain for a path that leaves the folder.
     """
     *between, last = name.split("/")
     if any(not part or part in (".", "..") or "\0" in part for part in (*between, last)):

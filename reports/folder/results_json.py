@@ -1,4 +1,4 @@
-"""results.json read back and checked: those parts of it that commands use."""
+"""results.json read back and checked: the parts that commands use."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from reports.tables.json_results import RESULTS_SCHEMA
 
 RESULTS_JSON = "results.json"
 MAX_RESULTS_SIZE = 1024 * MB
-MAX_MAGNITUDE = 1e60  # in any unit; products of larger ones would not be numbers
+MAX_MAGNITUDE = 1e60  # in any unit; products of larger numbers would overflow
 SCHEMA_NAME, _, SCHEMA_VERSION = RESULTS_SCHEMA.partition("/")
 PATH_SEPARATORS = "/\\\0"
 
@@ -32,7 +32,7 @@ def _of_one_file(name: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(_of_one_file)]
-# Lists: strict validation takes a list of JSON for no tuple.
+# Lists, because strict validation rejects a JSON list for a tuple.
 Ends = Annotated[list[Number | None], Field(min_length=2, max_length=2)]
 Place = Annotated[list[Number], Field(min_length=3, max_length=3)]
 
@@ -156,7 +156,7 @@ def _require_schema(content: Any) -> None:
 
 
 def _printable(node: Any) -> Any:
-    """Return the values without control characters, which another program may have written."""
+    """Return the values with control characters replaced; another program may have written them."""
     if isinstance(node, dict):
         return {_printable(key): _printable(value) for key, value in node.items()}
     if isinstance(node, list):

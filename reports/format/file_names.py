@@ -1,4 +1,4 @@
-"""File names of the plots, known without drawing any."""
+"""File names of the plots, known before any plot is drawn."""
 
 from __future__ import annotations
 
@@ -10,12 +10,16 @@ SVG_SUFFIX, PNG_SUFFIX = ".svg", ".png"
 
 
 def plot_name(kind: str, *names: str) -> str:
-    """Return a name without extension, such as "reactions.retract.B"; names stay distinct."""
+    """Return a file name without extension, such as "reactions.retract.B"; different names stay
+    different.
+    """
     return ".".join((kind, *(_safe(name) for name in names)))
 
 
 def drive_names(drive: DriveTable) -> list[str]:
-    """Return the names of a drive for plot_name: its case and, where it has one, its own name."""
+    """Return the names of a drive for plot_name: its case and, if the drive has one, its
+    own name.
+    """
     return [drive.case, drive.name] if drive.name else [drive.case]
 
 
@@ -25,5 +29,5 @@ def animation_name(case: str) -> str:
 
 
 def _safe(name: str) -> str:
-    # A dot parts the names, so it is no letter of one.
+    # Dots separate the names, so a dot within a name is encoded.
     return quote(name, safe="").replace(".", "%2E")

@@ -1,4 +1,4 @@
-"""Numbers as engineers write them: four digits, no 1e+05, exponents in threes."""
+"""Numbers as engineers write them: four digits, no 1e+05, exponents that are multiples of three."""
 
 from __future__ import annotations
 
@@ -10,16 +10,17 @@ from decimal import Decimal
 DASH = "–"
 SUPERSCRIPT_DIGITS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MARGIN_DIGITS = 3
-MAX_DIGITS = 9  # of a number beside its limit
+MAX_DIGITS = 9  # of a number shown with its limit
 COMPONENT_ROUND_OFF = 1e-9  # of the largest component; anything smaller is round-off
-# From which on, and below which, three digits would need an exponent
+# Outside this range, Python would write three digits with an exponent.
 LARGE_NUMBER, SMALL_NUMBER = 1e3, 1e-4
 
 
 def engineering(value: float | None, digits: int = 4) -> str:
-    """Return a number with `digits` significant digits; a dash for None or a non-finite one.
+    """Return a number with `digits` significant digits; a dash for None or a non-finite number.
 
-    Up to a million it has commas at thousands; beyond that and below a thousandth it has 10³ⁿ.
+    From 0.001 to below ten million the number is written out, with commas at thousands; otherwise
+    it has a power 10³ⁿ.
     """
     if value is None or not math.isfinite(value):
         return DASH
@@ -34,7 +35,7 @@ def engineering(value: float | None, digits: int = 4) -> str:
 
 
 def beside_limit(value: float, limit: float, digits: int, at_most: bool = False) -> str:
-    """Return a number with `digits` significant digits, or more where rounding would hide that it
+    """Return a number with `digits` significant digits, or more if rounding would hide that it
     misses a limit.
 
     at_most: whether the limit is an upper one.
@@ -49,7 +50,7 @@ def beside_limit(value: float, limit: float, digits: int, at_most: bool = False)
 
 
 def margin_text(margin: float | None) -> str:
-    """Return a margin of safety with its sign, "+∞" without any demand; a dash for None."""
+    """Return a margin of safety with its sign; "+∞" without demand, a dash for None."""
     if margin is not None and math.isinf(margin):
         return "+∞"
     return f"{'+' if (margin or 0.0) > 0.0 else ''}{engineering(margin, MARGIN_DIGITS)}"
@@ -66,7 +67,9 @@ def _plain(value: float, digits: int, size: int) -> str:
 
 
 def short(value: float) -> str:
-    """Return a dimension or an instant as it was given: no padding zeros, at most six digits."""
+    """Return a dimension or an instant as it was given: without trailing zeros, at most
+    six digits.
+    """
     text = engineering(value, 6)
     head, times, power = text.partition("×")
     if "." in head:
@@ -75,26 +78,28 @@ def short(value: float) -> str:
 
 
 def drawn(value: float) -> str:
-    """Return a dimension on a drawing: as it was given, or with five digits where it was given in
-    another unit, of which more would say nothing.
+    """Return a dimension on a drawing as it was given, or with five digits if it was converted from
+    another unit.
     """
     given = math.isclose(value, float(f"{value:.6g}"), rel_tol=1e-9)
     return short(value if given else float(f"{value:.5g}"))
 
 
-def like(value: float, given: float) -> str:
-    """Return a number rounded to as many decimals as a given one has."""
+def with_decimals_of(value: float, given: float) -> str:
+    """Return a number with as many decimals as a given number has."""
     _, _, decimals = f"{Decimal(repr(float(given))):f}".partition(".")
     return f"{value:,.{len(decimals.rstrip('0'))}f}".replace("-", "−")
 
 
 def finite(value: float | None) -> float | None:
-    """Return the number, or None where it is not finite."""
+    """Return the number; None if it is not finite."""
     return None if value is None or not math.isfinite(value) else float(value)
 
 
 def ratio(ours: float | None, published: float | None) -> float | None:
-    """Return computed over published, None where either is missing or published is zero."""
+    """Return computed over published value; None if either is missing or the published value is
+    zero.
+    """
     if ours is None or published is None or published == 0.0:
         return None
     return finite(ours / published)

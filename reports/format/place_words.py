@@ -1,4 +1,4 @@
-"""Where the largest stress of a pin lies, and which internal force governs there, in words."""
+"""The place of the largest stress of a pin, and the internal force that governs there, in words."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from assess.diameter_law import BENDING_EXPONENT, SHEAR_EXPONENT
 from reports.data.results import CutShape, PinShape
 from reports.data.row import PinResult
 
-NEAR_STEP = 0.1  # of the diameter: what is nearer to a change of diameter, or a cut, lies at it
-OFF_SURFACE = 1e-3  # of the radius: what lies deeper is a wall of a cut
+NEAR_STEP = 0.1  # of the diameter; places nearer to a step or a cut are named after it
+OFF_SURFACE = 1e-3  # of the radius; deeper points are on the wall of a cut
 
 
 def action(row: PinResult) -> str:
-    """Return the internal force that makes most of the stress of the governing section; empty for a
-    pin without sections, or in which no load acts.
+    """Return the internal force that causes most of the stress of the governing section.
+
+    The text is empty for a pin without sections, or without stress in them.
     """
     section = row.places.section if row.places else None
     if section is None or not section.max_von_mises:
@@ -29,8 +30,10 @@ def action(row: PinResult) -> str:
 
 
 def place_words(row: PinResult, shape: PinShape | None) -> str:
-    """Return where a row's maximum lies: "shear between F1 and F2", "surface, step beside E2",
-    "surface, hole 1"; nothing of a row without stress.
+    """Return the place of a row's maximum: "shear between F1 and F2", "surface, step beside E2",
+    "surface, hole 1".
+
+    The text is empty for a row without stress.
     """
     if row.places is None or row.location is None or not row.max_von_mises:
         return ""
@@ -47,13 +50,13 @@ def place_words(row: PinResult, shape: PinShape | None) -> str:
 
 
 def cut_at(shape: PinShape, location: tuple[float, ...]) -> str:
-    """Return the name of the cut on whose wall, or beside whose mouth, a place of the surface lies;
+    """Return the name of the cut on whose wall, or beside whose mouth, a point of the surface lies;
     empty if there is none.
     """
     x, y, z = location
     outer, bore = _radii(shape, z)
     reach = 2.0 * NEAR_STEP * outer
-    away = dict[str, float]()  # of the mouths, along the circumference
+    away = dict[str, float]()  # distances from the mouths, along the circumference
     for cut in shape.cuts:
         (low, high), half = cut.z, _half_width(cut, outer)
         ends = half if low == high else 0.0
@@ -89,7 +92,7 @@ def _half_width(cut: CutShape, outer: float) -> float:
 
 
 def along_words(shape: PinShape, z: float) -> str:
-    """Return where z lies along a pin: "step beside E2", "under E2", "between E1 and E2",
+    """Return the position of z along a pin: "step beside E2", "under E2", "between E1 and E2",
     "beside root".
     """
     ends, start = [], 0.0

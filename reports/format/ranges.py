@@ -1,4 +1,4 @@
-"""Error and safety factor of a maximum as text, with intervals for a singular row."""
+"""Error and safety factor of a maximum as text; intervals for a singular row."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from reports.data.decision import limit, utilisation
 from reports.data.row import PinResult, SharingRange
 from reports.format.numbers import DASH, beside_limit, engineering
 
-UNKNOWN = "unknown"  # an error that the model or too few meshes do not tell
+UNKNOWN = "unknown"  # an error that the model, or too few meshes, cannot give
 END_DIGITS = 3  # digits of factors and of an interval's ends
-ERROR_PART_WORDS = {  # of an error, in words
+ERROR_PART_WORDS = {  # sources of the parts of an error
     "mesh": "mesh",
     "time": "time",
     "series": "terms of the bearing pressure",
@@ -24,7 +24,7 @@ ERROR_PART_WORDS = {  # of an error, in words
 def error_range(pin: PinResult, to: str = " to ") -> str:
     """Return the error of a maximum, or for a singular row its interval.
 
-    That interval is over half and twice the excluded distance, which is a convention.
+    The interval is the one over half and twice the excluded distance, which is a convention.
     """
     interval = pin.max_von_mises_interval
     if interval is None:
@@ -33,7 +33,7 @@ def error_range(pin: PinResult, to: str = " to ") -> str:
 
 
 def percent_error(pin: PinResult) -> str:
-    """Return the relative error of a maximum, unless it is not known; a dash without a maximum."""
+    """Return the relative error of a maximum, or "unknown"; a dash without a maximum."""
     if not pin.max_von_mises or pin.error_estimate is None:
         return DASH
     if not pin.maximum.bounded:
@@ -42,24 +42,26 @@ def percent_error(pin: PinResult) -> str:
 
 
 def factor_range(pin: PinResult, to: str = " to ") -> str:
-    """Return the safety factor or its interval with three digits, which is what loads deserve."""
+    """Return the safety factor, or its interval, with three digits; loads are not known
+    any better.
+    """
     ends = pin.safety_factor_interval or (pin.safety_factor,)
     return _joined((factor_text(end, limit(pin)) for end in ends), to)
 
 
 def _joined(ends: Iterable[str], to: str = " to ") -> str:
-    """Return the ends of a range, once where both are the same: at a section that governs."""
+    """Return the ends of a range; only one if both are equal, as where a section governs."""
     return to.join(dict.fromkeys(ends))
 
 
 def factor_text(factor: float | None, required: float, digits: int = END_DIGITS) -> str:
-    """Return a factor with three digits, or more where rounding would carry it past `required`."""
+    """Return a factor with `digits` digits, or more if rounding would carry it past `required`."""
     return DASH if factor is None else beside_limit(factor, required, digits)
 
 
 def used_text(used: float, digits: int = END_DIGITS) -> str:
-    """Return a utilisation in per cent, with more digits where rounding would hide that it exceeds
-    100 %.
+    """Return a utilisation in per cent, with more digits if rounding would hide that it exceeds 100
+    %.
     """
     return f"{beside_limit(100.0 * used, 100.0, digits, at_most=True)} %"
 
@@ -74,14 +76,14 @@ def utilisation_range(pin: PinResult, required: float) -> str:
 
 
 def variation_range(over: JointRange | SharingRange | None) -> str:
-    """Return the maximum over what is not known of a joint, or over the stiffness of links; a dash
-    where that was not computed.
+    """Return the range of the maximum over the joint, or over the stiffness of links; a dash
+    without one.
     """
     return " to ".join(engineering(x, END_DIGITS) for x in over.max_von_mises) if over else DASH
 
 
 def part_words(pin: PinResult) -> str:
-    """Return the contributions to the error of a maximum, without those that are zero."""
+    """Return the sources of the error of a maximum, without those that contribute nothing."""
     return ", ".join(
         ERROR_PART_WORDS[part] for part, value in pin.error_parts.items() if value > 0.0
     )

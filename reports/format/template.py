@@ -1,4 +1,4 @@
-"""Templates of pages; everything that does not come from here is escaped."""
+"""Templates of pages; all text that does not come from a template is escaped."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from jinja2 import BytecodeCache, Environment
 
 TEMPLATE_FOLDER = Path(__file__).parents[1] / "templates"
-VENDOR_FOLDER = TEMPLATE_FOLDER / "vendor"  # scripts of others
+VENDOR_FOLDER = TEMPLATE_FOLDER / "vendor"  # third-party scripts
 
 
 @cache
 def environment() -> Environment:
     """Return the environment of all templates, each of which is compiled once.
 
-    It is made on demand, so that jinja is not imported at start-up.
+    The environment is made on demand, so that jinja is not imported at start-up.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -35,13 +35,15 @@ def environment() -> Environment:
 
 
 def rendered(template: str, **values: object) -> str:
-    """Return a page as text: a template by its name, with the values that it names."""
+    """Return a page as text. values: the variables that the template names."""
     return environment().get_template(template).render(values)
 
 
 def _compiled() -> BytecodeCache:
-    """Return where compiled templates are kept for other runs: where Python keeps our modules, if
-    it may; compiling them takes a tenth of a short run.
+    """Return the cache of compiled templates, which later runs use.
+
+    The cache is in the folder in which Python keeps our compiled modules, if that is writable.
+    Compiling the templates takes a tenth of a short run.
     """
     from jinja2 import FileSystemBytecodeCache
     from jinja2.bccache import Bucket
@@ -49,7 +51,7 @@ def _compiled() -> BytecodeCache:
     class BesideModules(FileSystemBytecodeCache):
         def dump_bytecode(self, bucket: Bucket) -> None:
             if not sys.dont_write_bytecode:
-                with suppress(OSError):  # a folder that can only be read, a full disk
+                with suppress(OSError):  # a read-only folder, or a full disk
                     Path(self.directory).mkdir(parents=True, exist_ok=True)
                     super().dump_bytecode(bucket)
 

@@ -19,8 +19,8 @@ from reports.format.units import unit_name
 
 BEYOND_YIELD = "beyond yield"
 WITHIN_ERROR = "within its error"  # of a limit, so that a row is not decided
-MAX_NAMED_PINS = 6  # in the first sentence; of more, their number is given
-MAX_NAMED_PROPERTIES = 4  # properties of a range; of more, their number is given
+MAX_NAMED_PINS = 6  # in the first sentence; of further pins the number is given
+MAX_NAMED_PROPERTIES = 4  # of a range; of further ones the number is given
 
 RESULT_ROWS_NOTE = (
     "One row per pin and case, the worst first. The maximum is the larger von Mises stress of the "
@@ -60,7 +60,7 @@ OUTCOME_MEANINGS = {
     NOT_DECIDED: "the results do not show whether the pin meets it; the verdict gives the reason, "
     "or the factor is within its error of the required one, or the material has no yield strength.",
 }
-# What each verdict means, one sentence each.
+# The meaning of each verdict, in one sentence.
 VERDICT_MEANINGS = {
     "converged": "the estimated error is within the requested tolerance.",
     "unconverged": "the estimated error exceeds the requested tolerance; like any other, the "
@@ -78,7 +78,7 @@ VERDICT_MEANINGS = {
 
 
 def verdict_words(verdict: str, yields: bool | None) -> str:
-    """Return a verdict, and whether the stress is beyond yield."""
+    """Return a verdict, followed by "beyond yield" if the stress is."""
     return f"{verdict}, {BEYOND_YIELD}" if yields else verdict
 
 
@@ -99,7 +99,7 @@ def undecided_because(pin: PinResult) -> str:
 
 
 def result_words(pin: PinResult) -> str:
-    """Return the outcome of a row, with the reason where it is open: "not decided: singular",
+    """Return the outcome of a row, with the reason if it is open: "not decided: singular",
     "depends: joint".
     """
     if pin.outcome == NOT_DECIDED:
@@ -117,7 +117,7 @@ def over_words(depends_on: Sequence[Dependence]) -> str:
 
 
 def depends_words(depends_on: Sequence[Dependence], units: Units) -> str:
-    """Return the dependences of an outcome, with the values at which it changes.
+    """Return the dependences of an outcome, with the values at which the outcome changes.
 
     Examples: "the range of the joint (clearance above 0.0031 in, tilt guided)", "stress beneath
     contact (factor 1.08, too low to a depth of 0.31 in)".
@@ -145,12 +145,12 @@ def but_words(depends_on: Sequence[Dependence], units: Units, fails: str = "fail
 
 
 def _lost_fits(depends_on: Sequence[Dependence]) -> list[str]:
-    """Return "press fit lost in A above 75.3 degC" as a list of one text, or none."""
+    """Return a text for each lost press fit: "press fit lost in A above 75.3 degC"."""
     return [f"{d.what} {d.value}" for d in depends_on if d.over == PRESS_FIT]
 
 
 def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
-    """Return all ranges in words as a list of one text; empty without ranges."""
+    """Return a list with one text that names all ranges; empty without ranges."""
     parts = []
     for over in dict.fromkeys(d.over for d in depends_on):
         if over in (BENEATH_CONTACT, PRESS_FIT):
@@ -168,7 +168,7 @@ def _ranges(depends_on: Sequence[Dependence], units: Units) -> list[str]:
 
 
 def _beneath(d: Dependence, units: Units) -> str:
-    """Return the words for stress beneath contact: its factor, and the depth of excess stress."""
+    """Return the factor beneath contact, and the depth to which the stress is too high."""
     factor = f"factor {engineering(d.factor, 3)}"
     if d.value:
         return f"{factor} {d.value}"
@@ -190,10 +190,11 @@ def _dependence(d: Dependence, units: Units) -> str:
 
 
 def headline(results: Results) -> str:
-    """Return the outcome of all pins in one sentence; empty when nothing was solved.
+    """Return the outcome of all pins in one sentence; empty if no pin was solved.
 
-    It says how many pins fail, with their factors, the required one and the case; of a single pin,
-    or where none fails, what is true of the worst one; or that all pins are safe.
+    If several pins were solved and some fail, the sentence gives their number and names, the
+    required factor and the case. If all are safe, it gives the lowest factor. Otherwise it
+    describes the worst pin.
     """
     worst = worst_checks(results)
     if not worst:
@@ -222,8 +223,9 @@ def headline(results: Results) -> str:
 
 
 def _failing(checks: Sequence[JudgedCheck], results: Results) -> str:
-    """Return the sentence on the pins that fail, the worst first: "5 of 9 pins miss the required
-    factor 10 (landing): E, J, A, D, G."
+    """Return the sentence on the pins that fail, the worst first.
+
+    Example: "5 of 9 pins miss the required factor 10 (landing): E, J, A, D, G."
     """
     pins = len({row.pin for row in results.pins})
     cases, required = ({getattr(c, key) for c in checks} for key in ("case", "required"))
@@ -260,7 +262,7 @@ def _factor_words(row: PinResult) -> tuple[str, str]:
 def _all_safe(results: Results, least: JudgedCheck, pins: int) -> str:
     """Return the sentence that all pins are safe.
 
-    least: the worst of all checks, which may be another than the model's stress against yield.
+    least: the worst of all checks, which may be another check than stress against yield.
     """
     row = worst_first(results)[0]
     factor, needed = _factor_words(row)
@@ -293,15 +295,19 @@ def _of_margin(check: JudgedCheck) -> str:
 
 
 def margin_words(check: JudgedCheck) -> str:
-    """Return a check with its margin of safety or its required factor, and its case."""
+    """Return a check with its margin of safety, or its factor and the required one, and
+    its case.
+    """
     case = f" ({check.case})" if check.case else ""
     name = "" if check.stated else "margin of safety "
     return f"{check.check}, {name}{spare_words(check)}{case}"
 
 
 def not_judged(pins: Iterable[str], checks: Iterable[str]) -> str:
-    """Return the sentences that factors are of pins alone, of which these have lugs, and of yield
-    alone, beside which a run judges these checks; empty without any.
+    """Return sentences on the checks that a search leaves out and `pinstress run` makes; empty
+    without any.
+
+    pins: those with lugs, which are not checked. checks: those other than yield.
     """
     names, others = (", ".join(dict.fromkeys(x)) for x in (pins, checks))
     of_lugs = f"The lugs of {names} are not checked here: `pinstress run` checks them, too."

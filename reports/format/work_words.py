@@ -1,4 +1,4 @@
-"""The work of a check in words: its formula with symbols, then with numbers and units."""
+"""The working of a check in words: its formula with symbols, then with numbers and units."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reports.format.units import unit_name
 
 
 def quantity_text(quantity: WorkQuantity, units: Units) -> str:
-    """Return a number with its unit; of a dimension such as "length^2", too."""
+    """Return a number with its unit, also for a dimension such as "length^2"."""
     names = []
     for part in quantity.dimension.split():
         name, _, exponent = part.partition("^")
@@ -34,7 +34,7 @@ def work_lines(work: Work, units: Units) -> tuple[str, str]:
 
 
 def work_text(margin: Margin, units: Units) -> str:
-    """Return all work of a margin in one line; empty without any."""
+    """Return all working of a margin in one line; empty without any."""
     return "; ".join(" ".join(work_lines(work, units)) for work in margin.work)
 
 

@@ -1,4 +1,4 @@
-"""A checked study in one offline file: its linkage with loads, its pins, what would be solved."""
+"""A checked study in one offline file: its linkage with loads, its pins, and the rows to solve."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reports.page.pin_drawing import draw_pin
 from reports.tables.column import Column, Table, read_only
 
 MAX_DRAWN_CASES = 6  # cases whose linkage is drawn
-MAX_DRAWN_PINS = 60  # pins that are drawn; the table has all
+MAX_DRAWN_PINS = 60  # the table lists all pins
 
 ROW_COLUMNS: list[Column[PlannedRow]] = [
     read_only("pin", lambda row: row.pin, numeric=False),
@@ -38,7 +38,7 @@ def write_check(study: CheckedStudy, path: Path) -> None:
 
     Raises: OSError.
     """
-    there = Path(os.path.realpath(path))  # the user may give a link
+    there = Path(os.path.realpath(path))  # `path` may be a link
     write_inside(there.parent, there.name, render(study).encode())
 
 
@@ -74,7 +74,9 @@ def render(study: CheckedStudy) -> str:
 
 
 def _loaded(skeleton: Skeleton, units: Units) -> str:
-    """Return the linkage at the instant of the largest applied force, with names of the joints."""
+    """Return the drawing of the linkage at the instant of the largest applied force, with joint
+    names.
+    """
     sizes = sum((load.sizes for load in skeleton.forces), np.zeros(len(skeleton.position)))
     title = f"The linkage in case {skeleton.case}, with its applied forces"
     marks = [Mark(joint, joint) for joint in skeleton.joints]
@@ -84,7 +86,7 @@ def _loaded(skeleton: Skeleton, units: Units) -> str:
 
 
 def _lug_words(shape: PinShape, unit: str) -> list[str]:
-    """Return a line for the lugs that are alike."""
+    """Return a line for each group of lugs of the same size, material and clearance."""
     alike: dict[str, list[str]] = {}
     for lug in shape.lugs:
         size = f"⌀{drawn(lug.outer_diameter)} {unit}, {lug.material}"

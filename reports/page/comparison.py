@@ -21,7 +21,7 @@ class PicturePair:
 
     @property
     def shown(self) -> list[str]:
-        """Return both pictures as data of the page, empty for none."""
+        """Both pictures in base64; empty for a missing one."""
         return [
             "" if path is None else b64encode(path.read_bytes()).decode("ascii")
             for path in self.files
@@ -31,10 +31,7 @@ class PicturePair:
 def write_comparison(
     comparison: RunComparison, path: Path, drawn: str, pictures: tuple[PicturePair, ...] = ()
 ) -> None:
-    """Write the page.
-
-    drawn: the plot as SVG, empty without one.
-    """
+    """Write the page. drawn: the plot as SVG, empty without one."""
     plot = comparison_plot(comparison)
     text = rendered(
         "comparison.html.j2",

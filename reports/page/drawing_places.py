@@ -1,4 +1,4 @@
-"""Places of the stress of a pin's rows, for its drawing."""
+"""Places of the largest stress of a pin's rows, for its drawing."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from math import hypot
 from reports.data.decision import worst_first
 from reports.data.results import Results
 
-PLACE_TOLERANCE = 0.01  # of the pin's length: places so near are one
-MAX_DRAWN_PLACES = 4  # the worst; more would cover each other
+PLACE_TOLERANCE = 0.01  # of the pin's length; nearer places share a mark
+MAX_DRAWN_PLACES = 4  # the worst; more marks would overlap
 MAX_NAMED_CASES = 2  # cases of a place
 
 
 @dataclass(frozen=True)
 class PlaceMark:
-    """The place of the stress of some cases.
+    """The place of the largest stress of some cases.
 
-    r: distance from the axis, None for a section.
+    r: distance from the axis; None for a section.
     """
 
     z: float

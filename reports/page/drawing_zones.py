@@ -1,7 +1,7 @@
-"""Marks on the drawing of a pin for stress singularities and places of stress.
+"""Marks on the drawing of a pin for stress singularities and places of the largest stress.
 
-Numbered rings mark stress singularities, with their kind; stripes mark excluded stress about them.
-Dots mark rows with their stress on the surface, and lines across the section that has it.
+Numbered rings mark stress singularities, with their kind; stripes mark the excluded zones about
+them. A dot marks the largest stress on the surface, a line across the pin the section that governs.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from reports.page.drawing_places import PlaceMark
 from reports.tables.stress.singular_zones import ShownZone
 
 ZONE_COLOUR = "#a8211b"
-# In pixels of the drawing:
+# Lengths in pixels of the drawing.
 RING_RADIUS, DOT_RADIUS = 4.0, 3.5
 LABEL_ROW_HEIGHT = 14.0
 FIRST_ROW_GAP = 10.0  # between the section and the first row
@@ -29,10 +29,12 @@ STRIPE_PATTERN = (
 
 @dataclass(frozen=True)
 class _Mark:
-    """A zone or a place of stress on the drawing.
+    """A zone or a place of stress on the drawing; lengths in pixels.
 
-    x: position. r: distance from the axis; for a section the radius of the pin.
-    excluded: distance that is excluded. words: the label.
+    x: position.
+    r: distance from the axis; for a section the radius of the pin.
+    excluded: the excluded distance.
+    words: the label.
     """
 
     x: float
@@ -44,9 +46,10 @@ class _Mark:
 
 
 class ZoneMarks:
-    """The marks of the zones (one per circle) and of places on a pin drawn at `scale` from `left`.
+    """The marks of zones, one for each circle, and of places on the drawing of a pin.
 
-    Labels are kept inside a picture of `width`; radius: of the drawn pin.
+    drawn: left end, scale and radius of the drawn pin.
+    width: of the picture, in which labels are kept.
     """
 
     def __init__(
@@ -86,9 +89,9 @@ class ZoneMarks:
         return FIRST_ROW_GAP + LABEL_ROW_HEIGHT * (max(self.rows) + 1) if self.marks else 0.0
 
     def stripes(self, axis: float, wall: tuple[float, float, float, float]) -> list[str]:
-        """Return the excluded parts of a wall of the section.
+        """Return the stripes of the excluded zones in a wall of the section.
 
-        wall: x, y, width, height of its rectangle, outside which an inner <svg> draws nothing.
+        wall: x, y, width and height of its rectangle; an inner <svg> clips the stripes to it.
         """
         x, y, width, height = wall
         discs = [
@@ -104,9 +107,9 @@ class ZoneMarks:
         return [frame, *discs, "</svg>"]
 
     def draw(self, axis: float, foot: float) -> list[str]:
-        """Return rings above and below the axis, leaders and labels.
+        """Return the marks above and below the axis, the leaders and the labels.
 
-        foot: the section's lower edge.
+        foot: the lower edge of the section.
         """
         parts = []
         for mark, place, row in zip(self.marks, self.places, self.rows, strict=True):
@@ -156,7 +159,9 @@ def _touches(x: float, y: float, radius: float, wall: tuple[float, float, float,
 
 
 def _within(mark: _Mark, width: float) -> float:
-    """Return the middle of a label, as close to its ring as the picture allows."""
+    """Return the x of the middle of a label, as close to its mark as the width of the picture
+    allows.
+    """
     half = min(0.5 * wide(mark.words), 0.5 * width)
     return min(max(mark.x, half), width - half)
 

@@ -10,16 +10,17 @@ from reports.format.numbers import engineering, short
 from reports.tables.strength.overview import FactorAxis
 
 WIDTH, HEIGHT = 260.0, 62.0
-POINTS, REACH = 24, 1.25  # points; ratio of scales beyond the needed one
-CHARACTER, LINE = 6.5, 11.0  # width and height of a text's letter
-LEFT, ABOVE, RIGHT, BELOW = 40.0, 18.0, 10.0, 20.0  # margins, for the texts
+POINTS, REACH = 24, 1.25  # of the curve; the largest over the needed diameter
+CHARACTER, LINE = 6.5, 11.0  # width of a character and height of a line
+LEFT, ABOVE, RIGHT, BELOW = 40.0, 18.0, 10.0, 20.0  # margins for the labels
 
 
 def draw_factor_curve(line: PinLine, unit: str) -> str | None:
     """Return the lowest factor, with its error and beneath contact, against the diameter of a pin,
-    by the law of its section, as an <svg> element; None where no diameter is estimated.
+    as an <svg> element.
 
-    unit: of lengths. Colours: reports/templates/overview.css.
+    The curve follows the law of the section. The result is None where no diameter is estimated.
+    unit: of lengths. Colours are in reports/templates/overview.css.
     """
     d = line.diameter
     if d is None or d.needed is None:
@@ -32,7 +33,7 @@ def draw_factor_curve(line: PinLine, unit: str) -> str | None:
     across = [WIDTH * k / (POINTS - 1) for k in range(POINTS)]
     points = " ".join(f"{x:.1f},{_down(axis, f):.1f}" for x, f in zip(across, factors, strict=True))
     needed, at = _across(d.needed / d.given, most), _down(axis, required)
-    # Where two labels would meet, that of the needed diameter, or of the first factor, is moved.
+    # The label of the needed diameter, or of the first factor, is moved if it would meet another.
     given_text, needed_text = (f"{engineering(x, 3)} {unit}" for x in (d.given, d.needed))
     beside = CHARACTER * (len(given_text) + 0.5 * len(needed_text) + 2.0)
     below = max(_down(axis, factors[0]), at + LINE)

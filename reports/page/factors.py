@@ -31,7 +31,7 @@ from reports.tables.strength.sensitivities import sensitivity_notes, shown_sensi
 
 def factor_part(results: Results) -> dict[str, Any]:
     """Return the table of safety factors, with the sort key of each cell, and its explanation."""
-    # The result says what matters of the verdict, each pin's section the rest.
+    # The result includes the essence of the verdict; the rest is in the section of each pin.
     table = shown_factors(results, without=("verdict", "model"))
     return {
         "columns": [(c.key, c.headed(results.units), c.numeric) for c in table.columns],

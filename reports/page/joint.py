@@ -47,9 +47,11 @@ FOUNDATION_NOTE = (
 class JointPart:
     """The page's part on the joint of a pin.
 
-    sentence: on the error and range of the maximum. bands: if lugs support the pin. lugs: their
-    stress, if their shanks are known.
-    range: the maximum with the joint changed, if computed. assumed: whether the lugs were assumed.
+    sentence: on the error and range of the maximum.
+    bands: of the lugs that support the pin; None without any.
+    lugs: the stress of the lugs; None if their shanks are not known.
+    range: the maxima over the joint; None if not computed.
+    assumed: whether the lugs were assumed.
     """
 
     title: str
@@ -61,7 +63,7 @@ class JointPart:
 
 
 def joint_part(pin: PinResult, units: Units) -> JointPart | None:
-    """Return the part on a pin's joint; None where nothing is known of it."""
+    """Return the part on a pin's joint; None for a row without a joint."""
     joint = pin.joint
     if joint is None:
         return None
@@ -107,12 +109,12 @@ def _range(joint: JointResult, units: Units) -> Grid | None:
         *texts("changed=what"),
         read_only("to", lambda v: value_words(v, units), numeric=False),
         read_only("max von Mises", lambda v: v.max_von_mises, "stress"),
-        read_only(last, _beside),
+        read_only(last, _interval_or_beneath),
     ]
     return grid_of(Table("joint_range", columns, over.variations), units)
 
 
-def _beside(variation: Variation) -> str:
+def _interval_or_beneath(variation: Variation) -> str:
     """Return the range of a maximum if it has one, otherwise the stress beneath contact."""
     if variation.interval is None:
         return engineering(variation.beneath)
@@ -120,7 +122,7 @@ def _beside(variation: Variation) -> str:
 
 
 def value_words(variation: Variation, units: Units) -> str:
-    """Return the varied value: a length with its origin, or words."""
+    """Return the varied value: a length with its description, or words."""
     if not variation.length:
         return variation.value or DASH
     return f"{short(variation.length)} {units.length} ({variation.value})"

@@ -1,4 +1,4 @@
-"""The part of the page on what lets go first of each pin."""
+"""The part of the page on what lets go first in each pin's joint."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ from reports.tables.strength.lets_go import MAX_STEPS, first_sentence, notes, sh
 class LetsGoPart:
     """The parts of a pin's joint that let go first, in its governing case.
 
-    sentence: on the first. grid: the first steps; more: those after them, None without any.
-    misses: which of the steps of the grid have less than their required factor.
-    notes: on what was not computed, and how to read the factors.
+    sentence: on the first.
+    grid: the first steps. more: the steps after them; None without any.
+    misses: for each step of the grid, whether its load factor is below the required one.
+    notes: on steps that were not computed, and on how to read the factors.
     """
 
     case: str
@@ -29,7 +30,7 @@ class LetsGoPart:
 
 
 def lets_go_parts(results: Results) -> dict[str, LetsGoPart]:
-    """Return the parts by pin, of those of which any load factor is known."""
+    """Return the part of each pin of which any load factor is known."""
     return {pin.row.pin: _part(pin, results.units) for pin in lets_go(results) if pin.known}
 
 

@@ -1,7 +1,8 @@
 """A linkage at an instant as an SVG drawing, with its applied forces and marks at its joints.
 
-A planar linkage has one panel, in its plane. One in space has an isometric view with all labels,
-and views from the front, the right and above at one scale with the names of the marks.
+A planar linkage has one panel, in its plane. A linkage in space has an isometric view with all
+labels, and below it views from the front, the right and above at one scale, with the names of the
+marks.
 """
 
 from __future__ import annotations
@@ -35,9 +36,9 @@ from reports.page.linkage_parts import (
 )
 
 PICTURE_WIDTH, MIN_HEIGHT, MAX_HEIGHT = 410.0, 170.0, 470.0
-MARGIN = 50.0  # for names, supports and arrows
+MARGIN = 50.0  # room for names, supports and arrows
 LETTER, LABEL_GAP = (7.6, 16.0), 11.0  # mean width and height of a letter
-# Of the three views, whose letters and symbols are smaller
+# The three views have smaller letters and symbols.
 VIEW_HEIGHTS, VIEW_MARGIN, VIEW_TITLE_HEIGHT = (90.0, 210.0), 26.0, 18.0
 VIEW_LETTER, VIEW_SYMBOL_SCALE = (6.5, 12.0), 0.62
 MAX_ISOMETRIC_HEIGHT = 330.0
@@ -49,10 +50,12 @@ def draw_linkage(
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
-    Links are as wide as their forces, joints rings, those of the ground with a triangle; arrows
+    Links are as wide as their forces. Joints are rings, fixed joints have a triangle, and arrows
     point at the places where forces act.
-    marks: the most important first. unit: of forces; with `length`, that of lengths, of couples.
-    Colours: reports/templates/linkage.css.
+    marks: the most important first.
+    unit: of forces.
+    length: the unit of length; with `unit` it gives that of couples.
+    Colours are in reports/templates/linkage.css.
     """
     marks = [mark for mark in marks if mark.joint in at.skeleton.joints]
     if at.skeleton.flat:
@@ -80,7 +83,7 @@ def _panel(
 def _shapes(
     at: Instant, panel: LinkagePanel, points: Points, arrows: Sequence[LoadArrow]
 ) -> Iterable[str]:
-    """Yield what has no text."""
+    """Yield all parts that are not text or marks."""
     yield from bodies(at, panel, points)
     yield from sliders(at, panel)
     yield from pitches(at, panel)
@@ -98,7 +101,9 @@ def _shapes(
 def _in_space(
     at: Instant, marks: Sequence[Mark], units: tuple[str, str]
 ) -> tuple[list[str], float]:
-    """Return the parts of the isometric view and, below it, of the three views, and the height."""
+    """Return the parts of the isometric view and of the three views below it, and the height in
+    pixels.
+    """
     up = at.skeleton.up
     panel = LinkagePanel.of(
         at, isometric(up), PICTURE_WIDTH, (MIN_HEIGHT, MAX_ISOMETRIC_HEIGHT), MARGIN
@@ -153,7 +158,7 @@ def _symbol(mark: Mark, points: Points, scale: float = 1.0) -> str:
     return mark.symbol and f'<g transform="translate({x:.1f} {y:.1f}){smaller}">{mark.symbol}</g>'
 
 
-Told = list[tuple[Floats, str, str]]  # labels: their points (2,), what is bold, and the rest
+Told = list[tuple[Floats, str, str]]  # labels: point (2,), bold text, other text
 
 
 def _told(
@@ -165,7 +170,7 @@ def _told(
 ) -> Told:
     """Return the labels of the marks, of applied loads, and of forces on the ground.
 
-    units: of forces and of length.
+    units: of force and of length.
     """
     unit, couple_unit = units[0], "·".join(units)
     told: Told = [(points[mark.joint], mark.name, mark.words) for mark in marks]
@@ -184,7 +189,7 @@ def _labels(
     panel: LinkagePanel,
     arrows: Sequence[LoadArrow],
 ) -> Iterable[str]:
-    """Yield labels where they hide least."""
+    """Yield the labels, placed where they hide least."""
     if not told:
         return
     skeleton = at.skeleton
@@ -209,7 +214,9 @@ def _labels(
 
 
 def _on_ground(at: Instant) -> Iterable[tuple[str, str]]:
-    """Yield the fixed joints with the size of the force that links pass to the ground there."""
+    """Yield each fixed joint with the magnitude of the force that the links exert on the ground
+    there.
+    """
     if at.table is None:
         return
     now = forces_at(at.table, at.k)

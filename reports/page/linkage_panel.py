@@ -1,4 +1,4 @@
-"""A panel of the drawing of a linkage: one view of it at an instant, with one scale."""
+"""A panel of the drawing of a linkage: one view at an instant, at one scale."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ Points = Mapping[str, Floats]  # pixels (2,) by joint
 class Instant:
     """A linkage at an instant.
 
-    k: number of the instant. table: the forces at its connections, where they are shown.
+    k: index of the instant.
+    table: the forces at its connections, where they are shown.
     """
 
     skeleton: Skeleton
@@ -29,10 +30,10 @@ class Instant:
 
 @dataclass(frozen=True)
 class Mark:
-    """A label at a joint, and what is drawn there.
+    """A label at a joint, and the symbol drawn there.
 
-    name: in bold. words: after it. symbol: an SVG element about the origin, in which all text is
-    escaped.
+    name: in bold. words: the text after the name.
+    symbol: an SVG element about the origin, in which all text is escaped.
     """
 
     joint: str
@@ -43,9 +44,12 @@ class Mark:
 
 @dataclass(frozen=True)
 class LinkagePanel:
-    """A view with its place for the linkage, in pixels from its own corner, y downwards.
+    """A view of a linkage and its place on the drawing, in pixels from the panel's corner, y
+    downwards.
 
-    scale: pixels per length. middle: of the view, (2,), in lengths. size: width and height.
+    scale: pixels per length.
+    middle: of the view, (2,), in lengths.
+    size: width and height.
     symbol: the scale of supports, pins and arrows.
     """
 
@@ -61,7 +65,8 @@ class LinkagePanel:
     ) -> LinkagePanel:
         """Return the panel that a linkage fills.
 
-        heights: the smallest and the largest. margin: on every side, for names and arrows.
+        heights: the smallest and the largest.
+        margin: on every side, for names and arrows.
         """
         low, high = _extent(at, view)
         span = np.maximum(high - low, 1e-9 * (1.0 + np.abs(high).max()))
@@ -76,17 +81,19 @@ class LinkagePanel:
         return np.asarray(away + 0.5 * np.array(self.size))
 
     def joints(self, at: Instant) -> Points:
-        """Return the pixels of every joint."""
+        """Return the position of every joint, in pixels (2,)."""
         skeleton = at.skeleton
         return dict(zip(skeleton.joints, self.pixels(skeleton.position[at.k]), strict=True))
 
     def direction(self, vector: Floats) -> Floats:
-        """Return a vector (3,) on the picture, (2,), y downwards, as long as it is seen."""
+        """Return the projection (2,) of a vector (3,) on the picture, y downwards, not scaled to
+        pixels.
+        """
         return np.asarray(self.view(vector) * np.array([1.0, -1.0]))
 
 
 def _extent(at: Instant, view: Projection) -> tuple[Floats, Floats]:
-    """Return the lowest and the highest coordinates of what is drawn of a linkage, each (2,)."""
+    """Return the lowest and the highest coordinates of the drawn parts of a linkage, each (2,)."""
     skeleton, k = at.skeleton, at.k
     parts = [skeleton.position[k], *(ends[k] for ends in skeleton.slides.values())]
     parts += [ends[k] for ends in skeleton.springs.values()]

@@ -1,4 +1,4 @@
-"""The parts of a linkage on a drawing of it, in one view: bodies, pins, supports, loads."""
+"""The parts of the drawing of a linkage in one view: bodies, pins, supports, loads."""
 
 from __future__ import annotations
 
@@ -18,22 +18,24 @@ from reports.page.linkage_panel import Instant, LinkagePanel, Points
 ARROW_CLEARANCE = 12.0  # between the tip of an arrow and the place where its force acts
 ARROW_LENGTHS = (22.0, 38.0)  # of the smallest and the largest force
 MIN_LINK_WIDTH, MAX_LINK_WIDTH = 1.5, 12.0
-PLAIN_LINK_WIDTH = 2.2  # where no force is shown
+PLAIN_LINK_WIDTH = 2.2  # of links without a known force
 SUPPORT_HEIGHT = 19.0
 SPRING_HALF_WIDTH = 5.0
-AXIS_REACH, PIN_REACH = 24.0, 13.0  # from a joint, of its axis and of the pin about it
-MIN_AXIS_LENGTH = 1.0  # of an axis on the picture; below it the ring of the joint stands for it
-END_ON_LENGTH = 0.25  # of a unit vector on the picture: below it an arrow points along the view
-RING_SIZE = 18.0  # of an arrow end on, with the width of its line
-TRIAD_REACH, TRIAD_LETTERS = 20.0, 27.0  # from its corner: the arrows of the axes and their names
+AXIS_REACH, PIN_REACH = 24.0, 13.0  # half lengths of the axis of a joint and of its pin
+MIN_AXIS_LENGTH = 1.0  # on the picture; of a shorter axis only the ring of the joint is drawn
+END_ON_LENGTH = 0.25  # projection of a unit vector; shorter ones are drawn as seen end on
+RING_SIZE = 18.0  # diameter of the ring of an arrow seen end on, with its line
+TRIAD_REACH, TRIAD_LETTERS = 20.0, 27.0  # distances of arrow tips and letters from the origin
 
 
 @dataclass(frozen=True)
 class LoadArrow:
-    """The arrow of an applied force or couple: its ends (2,), and its size.
+    """The arrow of an applied force or couple.
 
+    tip, tail: its ends (2,), pixels.
+    size: the magnitude of the force or couple.
     end_on: 1 where it points at the viewer, -1 where it points away, otherwise 0.
-    couple: whether it is a couple, about the arrow, which has two heads.
+    couple: whether it is a couple, about the arrow, which then has two heads.
     """
 
     tip: Floats
@@ -67,8 +69,10 @@ def sides(joints: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def bodies(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
-    """Yield bodies, the farthest first: with more than two joints as areas, and each side as wide
-    as the smaller of the forces at its ends.
+    """Yield the bodies, the farthest first.
+
+    A body with more than two joints is drawn as an area. Each side is as wide as the smaller of the
+    forces at its ends.
     """
     skeleton, widths = at.skeleton, _widths(at)
     index = {name: j for j, name in enumerate(skeleton.joints)}
@@ -93,14 +97,17 @@ def bodies(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
             yield f'<circle class="mass" cx="{centre[0]:.1f}" cy="{centre[1]:.1f}" r="4.5"/>'
 
 
-def line(kind: str, start: Floats, end: Floats, more: str = "") -> str:
-    """Return a line of a class of reports/templates/linkage.css."""
+def line(kind: str, start: Floats, end: Floats, attributes: str = "") -> str:
+    """Return a line.
+
+    kind: its class in reports/templates/linkage.css. attributes: further ones of the SVG element.
+    """
     (x1, y1), (x2, y2) = start, end
-    return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"{more}/>'
+    return f'<path class="{kind}" d="M{x1:.1f} {y1:.1f}L{x2:.1f} {y2:.1f}"{attributes}/>'
 
 
 def axes(at: Instant, panel: LinkagePanel, points: Points) -> Iterable[str]:
-    """Yield the axis of every pin that is not seen end on, and the pin about it."""
+    """Yield the axis of every joint that is not seen end on, and its pin."""
     for name, axis in zip(at.skeleton.joints, at.skeleton.axes[at.k], strict=True):
         along, here = panel.symbol * panel.direction(axis), points[name]
         if 2.0 * AXIS_REACH * np.linalg.norm(along) >= MIN_AXIS_LENGTH:
@@ -158,8 +165,8 @@ def support_foot(at: Floats, scale: float) -> list[Floats]:
 
 
 def load_arrows(at: Instant, panel: LinkagePanel) -> list[LoadArrow]:
-    """Return the arrow of each applied force and couple, each as long as its share of the largest
-    of its kind.
+    """Return the arrow of each applied force and couple; its length grows with its share of the
+    largest force or couple.
     """
     short, long = ARROW_LENGTHS
     arrows = []
@@ -184,8 +191,8 @@ def load_arrows(at: Instant, panel: LinkagePanel) -> list[LoadArrow]:
 
 
 def _rings(at: Instant, panel: LinkagePanel, arrows: Sequence[LoadArrow]) -> Iterable[LoadArrow]:
-    """Yield each force across the plane of a planar linkage, beside its point where it hides
-    least.
+    """Yield a ring for each force across the plane of a planar linkage, near its point of action,
+    where the ring hides least.
     """
     points = panel.joints(at)
     lines = [[point, point] for point in points.values()]
@@ -203,8 +210,10 @@ def _rings(at: Instant, panel: LinkagePanel, arrows: Sequence[LoadArrow]) -> Ite
 
 
 def draw_arrow(arrow: LoadArrow) -> str:
-    """Return an arrow; one along the view as a ring with its tip, a dot, or its tail, a cross (of a
-    couple, two rings).
+    """Return an arrow as SVG.
+
+    An arrow along the view is a ring with a dot (its tip) or a cross (its tail); a couple has two
+    rings.
     """
     if arrow.end_on:
         x, y = arrow.tip
@@ -226,7 +235,7 @@ def draw_arrow(arrow: LoadArrow) -> str:
 
 
 def triad(panel: LinkagePanel, corner: Floats) -> Iterable[str]:
-    """Yield the directions of x, y and z from a place, pixels (2,)."""
+    """Yield the directions of x, y and z as arrows from a corner, pixels (2,)."""
     for name, axis in zip("xyz", np.eye(3), strict=True):
         along = panel.direction(axis)
         yield line("triad", corner, corner + TRIAD_REACH * along)

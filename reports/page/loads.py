@@ -32,8 +32,8 @@ class DropPart:
 
 
 def load_part(results: Results, everything: Results) -> dict[str, Any]:
-    """Return the reactions, drops and landings of the cases that are shown, and loads on wheels of
-    all.
+    """Return the reactions, drops and landings of the cases that are shown, and the wheel loads of
+    all cases.
 
     everything: results with all cases.
     """
@@ -97,9 +97,8 @@ def _reactions(table: ReactionTable, units: Units) -> Grid:
 
 
 def loads_at(pin: PinResult, units: Units) -> Grid | None:
-    """Return the force of every body on a pin at the governing instant, in world axes.
-
-    None without loads.
+    """Return the force of every body on a pin at the governing instant, in world axes; None without
+    loads.
     """
     if not pin.loads:
         return None

@@ -1,4 +1,6 @@
-"""The most loaded lug of a pin, across its axis: eye, shank, and the pressure around the bore."""
+"""The most loaded lug of a pin, seen along its axis: eye, shank, and the pressure around
+the bore.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +20,10 @@ from reports.page.lug_drawing import BUSHING_COLOUR, LUG_PATTERN
 from reports.page.stress_along import StressAlong, governing_rows, surface_of
 from reports.page.stress_panel import LOAD_COLOUR
 
-SIZE = 240.0  # of the picture; below it are two lines of text
-EYE_SHARE = 0.5  # of the picture, that the eye takes
-PRESSURE_SHARE = 0.45  # of the pin's radius, that the largest pressure takes
-SHANK_REACH = 1.5  # radii of the eye, to which a shank is drawn where it is longer
+SIZE = 240.0  # of the picture, pixels; two lines of text are below it
+EYE_SHARE = 0.5  # of the picture, taken by the eye
+PRESSURE_SHARE = 0.45  # drawn height of the largest pressure over the pin's radius
+SHANK_REACH = 1.5  # radii of the eye; longer shanks are cut off there
 PIN_COLOUR = "#9dbbe0"
 
 
@@ -29,8 +31,11 @@ PIN_COLOUR = "#9dbbe0"
 class RingPressure:
     """The pressure about a pin on its most loaded ring in a lug.
 
-    z: of the ring. angles: (M,) of its sectors from x, rad; pressure: (M,).
-    force: of the link on the pin, along x and y. shank: its angle from x, rad.
+    pin: diameter of the pin.
+    z: of the ring.
+    angles: (M,) of its sectors from x, rad. pressure: (M,).
+    force: of the link on the pin, along x and y.
+    shank: its angle from x, rad.
     """
 
     lug: LugSketch
@@ -43,7 +48,7 @@ class RingPressure:
 
     @property
     def arc(self) -> float:
-        """The angle over which the pin touches, degrees."""
+        """The angle over which the pin touches the lug, degrees."""
         return degrees(2.0 * np.pi * np.count_nonzero(self.pressure > 0.0) / len(self.pressure))
 
 
@@ -67,7 +72,7 @@ def most_loaded(results: Results, shape: PinShape) -> RingPressure | None:
     ring = int(inside[case.pressure[inside].sum(axis=1).argmax()])
     pressure, points = case.pressure[ring], surface.points[case.rings == ring]
     angles = case.first + 2.0 * np.pi * np.arange(len(pressure)) / len(pressure)
-    # What presses towards the axis pushes the pin the other way.
+    # Pressure acts towards the axis, so it pushes the pin opposite to its sector.
     push = -(pressure[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)).sum(axis=0)
     push *= forces[lug.connection] / (float(np.hypot(*push)) or 1.0)
     force = float(push[0]), float(push[1])
@@ -86,7 +91,7 @@ def most_loaded(results: Results, shape: PinShape) -> RingPressure | None:
 
 
 def draw_across(results: Results, shape: PinShape, along: StressAlong | None) -> str:
-    """Return the view of the most loaded lug, as seen against z, with the upward direction of the
+    """Return the view of the most loaded lug, seen against z, with the upward direction of the
     drawing of the pin; empty where no pressure is known.
     """
     of = most_loaded(results, shape)
@@ -102,7 +107,7 @@ def draw_across(results: Results, shape: PinShape, along: StressAlong | None) ->
             'xmlns="http://www.w3.org/2000/svg" font-size="11" font-family="sans-serif">'
             f"<title>{escape(title)}</title><defs>{LUG_PATTERN}</defs>",
             *_outline(of, scale, turn, ink),
-            *_outline(of, scale, turn, ""),  # without ink: the outline is that of both
+            *_outline(of, scale, turn, ""),  # fill only, so that the outline encloses both
             *_bore(of, scale),
             *_pressure(of, scale, turn),
             *_force(of, turn, results.units),
@@ -113,7 +118,9 @@ def draw_across(results: Results, shape: PinShape, along: StressAlong | None) ->
 
 
 def _at(r: float, angle: float) -> str:
-    """Return a point at a distance from the middle of the picture and an angle, rad."""
+    """Return the point at a distance r, pixels, from the middle of the picture and at an angle,
+    rad.
+    """
     return f"{0.5 * SIZE + r * cos(angle):.2f},{0.5 * SIZE - r * sin(angle):.2f}"
 
 
@@ -134,7 +141,7 @@ def _outline(of: RingPressure, scale: float, turn: float, ink: str) -> Iterator[
 
 
 def _bore(of: RingPressure, scale: float) -> Iterator[str]:
-    """Yield bushing, bore and pin, with lines through the middle."""
+    """Yield the bushing, the bore and the pin, with centre lines."""
     lug, middle, ink = of.lug, 0.5 * SIZE, f'stroke="{INK_COLOUR}" stroke-width="0.8"'
     bore = 0.5 * scale * (of.pin + max(lug.clearance, 0.0))
     if lug.bushing > 0.0:
@@ -153,7 +160,7 @@ def _circle(kind: str, middle: float, r: float, fill: str, ink: str) -> str:
 
 
 def _pressure(of: RingPressure, scale: float, turn: float) -> Iterator[str]:
-    """Yield the pressure of every sector, from the surface of the pin outwards."""
+    """Yield the pressure of every sector, drawn outwards from the surface of the pin."""
     radius, half = 0.5 * scale * of.pin, np.pi / len(of.pressure)
     largest = float(of.pressure.max())
     sectors = []
@@ -169,7 +176,7 @@ def _pressure(of: RingPressure, scale: float, turn: float) -> Iterator[str]:
 
 
 def _force(of: RingPressure, turn: float, units: Units) -> Iterator[str]:
-    """Yield the force of the link on the pin as an arrow outside of the eye, towards the pin."""
+    """Yield the force of the link on the pin as an arrow outside the eye that points at the pin."""
     size, angle = hypot(*of.force), float(np.arctan2(of.force[1], of.force[0])) + turn
     outer = 0.5 * EYE_SHARE * SIZE
     tail, tip = outer + 30.0, outer + 6.0

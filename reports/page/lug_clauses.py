@@ -1,4 +1,4 @@
-"""The clauses of several codes side by side on one lug: failure modes by codes."""
+"""The clauses of several codes side by side for one lug: failure modes by codes."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ from reports.tables.strength.margins import MarginRow
 class ClauseCell:
     """A check of a lug by one code.
 
-    factor: allowable over demand; required: on the demand; both in words. misses: whether it is
-    too low. numbers: demand and allowable, and the dimension that would pass. lines: the check and
-    its work. needs: what is missing where it was not made.
+    factor: allowable over demand, in words. required: the required factor, in words.
+    misses: whether the factor is too low.
+    numbers: demand and allowable, and the dimension that would pass.
+    lines: the check and its working.
+    needs: what is missing where the check was not made.
     """
 
     factor: str
@@ -35,7 +37,7 @@ class ClauseCell:
 class LugClauses:
     """The table of one lug.
 
-    rows: a failure mode, with the worst check of each code; None where a code has none.
+    rows: failure modes, each with the worst check by each code; None where a code has none.
     """
 
     lug: str
@@ -44,9 +46,9 @@ class LugClauses:
 
 
 def lug_clauses(row: PinResult, units: Units) -> tuple[LugClauses, ...]:
-    """Return a table for each lug of a row; nothing where the study selects fewer than two codes.
+    """Return a table for each lug of a row; nothing if the study selects fewer than two codes.
 
-    Checks that all codes have are left out, as they do not differ.
+    Checks that all codes share are left out, since they do not differ.
     """
     margins = [m for m in row.margins if m.code and m.governs and lug_mode(m.method)]
     codes = tuple(dict.fromkeys(c for m in row.margins if m.code for c in m.code.split(", ")))
@@ -72,7 +74,9 @@ def _rows(
 
 
 def _is_of(m: Margin, lug: str, pin: str) -> bool:
-    """Return whether a margin is of a lug; one that was not made names it in what it needs."""
+    """Return whether a margin is of a lug; a check that was not made names the lug in what it
+    needs.
+    """
     if not m.needs:
         return m.at == lug
     return f"{lug_key(pin, lug)}." in m.needs or f"lug {lug}," in m.needs

@@ -1,4 +1,4 @@
-"""Lugs in section about a pin, with the load that they put on it, as parts of its drawing."""
+"""Lugs in section about a pin, and their load on the pin, as parts of the drawing of the pin."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ LUG_PATTERN = (
 )
 BUSHING_COLOUR = "#e0b23a"
 LINE_LOAD_HEIGHT = 24.0  # of the largest load per length
-MIN_LOAD_SHARE = 0.01  # of the largest: a smaller load per length is not drawn
+MIN_LOAD_SHARE = 0.01  # of the largest load per length; smaller loads are not drawn
 
 Frame = tuple[float, float, float]  # left end of the pin, pixels per length, y of its axis
 
 
 def draw_lug(lug: LugSketch, radius: float, frame: Frame) -> Iterator[str]:
-    """Yield the section of a lug and its bushing, above and below a pin of a drawn radius."""
+    """Yield the section of a lug and its bushing, above and below the pin.
+
+    radius: of the drawn pin.
+    """
     left, scale, axis = frame
     x, width = left + scale * lug.z[0], scale * (lug.z[1] - lug.z[0])
     bore = radius + 0.5 * scale * max(lug.clearance, 0.0)
@@ -42,10 +45,10 @@ def draw_lug(lug: LugSketch, radius: float, frame: Frame) -> Iterator[str]:
 def draw_line_loads(
     rings: Sequence[tuple[float, float, float, float]], frame: Frame, unit: str
 ) -> Iterator[str]:
-    """Yield the load per length of every ring, from the surface of the pin outwards on the side
-    where it presses, and the largest in words.
+    """Yield the load per length of every ring, and the largest in words.
 
-    rings: z from and to, load per length upwards, drawn radius of the pin.
+    It is drawn outwards from the surface of the pin, on the side on which the lug presses.
+    rings: start z, end z, load per length upwards, drawn radius of the pin.
     """
     left, scale, axis = frame
     largest = max((abs(load) for _, _, load, _ in rings), default=0.0)
@@ -54,7 +57,7 @@ def draw_line_loads(
         return
     bars = []
     for start, end, load, radius in shown:
-        side = 1.0 if load > 0.0 else -1.0  # what pushes upwards presses from below
+        side = 1.0 if load > 0.0 else -1.0  # a load upwards presses from below
         foot = axis + side * radius
         tip = foot + side * LINE_LOAD_HEIGHT * abs(load) / largest
         x0, x1 = left + scale * start, left + scale * end

@@ -1,4 +1,4 @@
-"""The first screen of the page: the verdict, the linkage, a bar for each pin, and three cards."""
+"""The first screen of the page: the outcome, the linkage, a bar for each pin, and three cards."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ from reports.text.load_path import names
 from reports.text.overview import actions, decisions, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
-MAX_PEAKS = 5  # pins whose largest stress the page tells
-MAX_LISTED_CASES = 6  # in the line on the study; of more cases it says the number
-LABEL_AT_END = 12.0  # per cent of the axis: nearer to its left end, the label begins at its line
-LAST_AT_END = 92.0  # beyond it, the number at a tick ends there
-AXIS_CHARACTERS = 20.0  # that fit above the axis where it is as narrow as the page makes it
-MAX_CHECKS = 1  # with one need, of a row of the matrix, by name
-MAX_MATRIX_PINS = 14  # columns of the matrix of requirements; of more pins the best share the last
-LONG_NAME = 16  # characters: longer names wrap, or stand upright above a column
+MAX_PEAKS = 5  # pins whose largest stress is given
+MAX_LISTED_CASES = 6  # in the line on the study; with more cases their number is given
+LABEL_AT_END = 12.0  # per cent of the axis; nearer to its left end, a label begins at its line
+LAST_AT_END = 92.0  # per cent of the axis; beyond it, the number at a tick ends at the tick
+AXIS_CHARACTERS = 20.0  # that fit above the axis at its smallest width
+MAX_CHECKS = 1  # named for each need in a row of the matrix
+MAX_MATRIX_PINS = 14  # columns of the matrix; with more pins the best ones share the last
+LONG_NAME = 16  # characters; longer names wrap, or are vertical above a column
 MARKS = {
     FAILS: "✕", YIELDS: "✕", SAFE: "✓", BELOW_YIELD: "✓", DEPENDS: "◐", NOT_DECIDED: "?",
     "met": "✓", "missed": "✕", "not checked": "?",
@@ -61,7 +61,8 @@ CLASSES = {"met": SAFE, "missed": FAILS, "not checked": NOT_DECIDED}
 def overview_part(results: Results, anchors: Mapping[str, str], drawing: str) -> dict[str, Any]:
     """Return the first screen of the page.
 
-    anchors: of the pins' parts of the page. drawing: shown where there is no linkage.
+    anchors: of the sections of the pins, by pin.
+    drawing: shown where there is no linkage.
     """
     lines = pin_lines(results)
     pins = list(dict.fromkeys(line.pin for line in lines))
@@ -117,7 +118,7 @@ def _linkage(
 
 
 def _caption(results: Results, case: str) -> str:
-    """Return what the signs in the drawing of the linkage in a case mean."""
+    """Return the meaning of the signs in the drawing of the linkage in a case."""
     text = (
         f"Case {case}. Number: factor. Width: force. Arrow: applied load. Triangle: "
         "frame, with its force."
@@ -128,7 +129,7 @@ def _caption(results: Results, case: str) -> str:
 
 
 def _legend(lines: Sequence[PinLine], axis: FactorAxis, open_values: bool) -> str:
-    """Return what the signs in the lines of the pins mean."""
+    """Return the meaning of the signs in the lines of the pins."""
     parts = ["Mark: factor and error."]
     if any(check_words(line) != DASH for line in lines):
         parts = [
@@ -171,7 +172,7 @@ def _accurate(lines: Sequence[PinLine], results: Results) -> list[str]:
 
 
 def nothing_to_change(lines: Sequence[PinLine]) -> str:
-    """Return the sentence of the card without any change."""
+    """Return the sentence of the card if no change is listed."""
     if lines and lines[0].outcome in GOOD:
         return "Nothing: every pin meets its requirements."
     if any(line.row.max_von_mises is None for line in lines):
@@ -189,7 +190,9 @@ def _css(outcome: str) -> str:
 
 
 def _ticks(axis: FactorAxis) -> dict[str, Any]:
-    """Return the numbers above an axis that do not touch the required factor, or each other."""
+    """Return the required factor and the numbers above an axis that overlap neither it nor each
+    other.
+    """
     required = None if axis.required is None else 100.0 * axis.at(axis.required)
     label = "" if required is None else _required(axis)
     taken = [] if required is None else [_written(label, required, LABEL_AT_END)]
@@ -204,9 +207,10 @@ def _ticks(axis: FactorAxis) -> dict[str, Any]:
 
 
 def _written(text: str, at: float, first: float = 0.0) -> tuple[float, float]:
-    """Return both ends, in per cent of the axis, of a text above it and half a space beside it.
+    """Return the ends, in per cent of the axis, of a text above it, with half a space on each side.
 
-    It is in the middle of its place, or begins there before `first`, or ends there near the end.
+    The text is centred at its place; it begins there before `first`, and ends there near the right
+    end.
     """
     width = 100.0 * (len(text) + 1) / AXIS_CHARACTERS
     low = at if at < first else at - width if at > LAST_AT_END else at - width / 2.0
@@ -219,7 +223,7 @@ def _required(axis: FactorAxis) -> str:
 
 
 def _span(ends: tuple[float, float], axis: FactorAxis) -> dict[str, float]:
-    """Return a part of an axis, in per cent of its length."""
+    """Return a part of an axis as left end and width, in per cent of its length."""
     low, high = (100.0 * axis.at(end) for end in ends)
     return {"left": low, "width": high - low}
 
@@ -252,7 +256,7 @@ def _fails(lines: Sequence[PinLine]) -> bool:
 
 
 def _columns(pins: Sequence[str]) -> dict[str, Sequence[str]]:
-    """Return the pins of each column of the matrix by its head.
+    """Return the pins of each column of the matrix, by the heading of the column.
 
     pins: the worst first.
     """
@@ -279,13 +283,15 @@ def _matrix_row(row: MatrixRow, columns: Iterable[Sequence[str]]) -> dict[str, A
 
 
 def _few(names: Sequence[str]) -> str:
-    """Return names, of many the first and the number of the others."""
+    """Return the names, or if there are many the first ones and the number of the others."""
     more = len(names) - MAX_CHECKS
     return ", ".join(names) if more <= 1 else f"{', '.join(names[:MAX_CHECKS])}, {more} more"
 
 
 def _caveats(results: Results, lines: Sequence[PinLine], formulas: bool) -> list[str]:
-    """Return what else limits the results; that all have converged the error already says."""
+    """Return the limits of the results, except that all maxima have converged, which the error
+    shows.
+    """
     notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]
     return [*skipped_checks(results, lines, formulas), *notes]
 

@@ -12,7 +12,7 @@ from reports.data.decision import worst_first
 from reports.data.envelope import detailed_rows
 from reports.data.results import Results
 from reports.format.file_names import animation_name, drive_names, plot_name
-from reports.format.numbers import DASH, engineering, like, ratio, short
+from reports.format.numbers import DASH, engineering, ratio, short, with_decimals_of
 from reports.format.packed import deflated
 from reports.format.ranges import error_words, factor_range
 from reports.format.template import environment
@@ -46,9 +46,9 @@ Find = Callable[..., Plot | None]
 if TYPE_CHECKING:
     from jinja2 import Template
 
-PRINTED_DRAWING_WIDTH = 420.0  # width of a pin's drawing, of half a page
+PRINTED_DRAWING_WIDTH = 420.0  # width of a pin's drawing, half a page
 SMALL_DRAWING_WIDTH = 350.0  # on the first screen
-MAX_PINS_AT_ONCE = 20  # pins; the parts of pages of more are made when they are opened
+MAX_PINS_AT_ONCE = 20  # with more pins, their sections are built when they are opened
 
 
 def write_page(results: Results, directory: Path) -> Path:
@@ -61,7 +61,7 @@ def write_page(results: Results, directory: Path) -> Path:
 def render(results: Results, directory: Path) -> str:
     """Return the page as text.
 
-    directory: its folder, which has the animations.
+    directory: the folder of the page, which has the animations.
     """
     from markupsafe import Markup
 
@@ -110,12 +110,12 @@ def render(results: Results, directory: Path) -> str:
 
 
 def _template() -> Template:
-    """Return the template of the page, with the functions that all its parts use."""
+    """Return the template of the page, with the functions that its parts use."""
     templates = environment()
     templates.filters.update(
         eng=engineering,
         short=lambda value: DASH if value is None else short(value),
-        like=like,
+        with_decimals_of=with_decimals_of,
         ratio=ratio,
         error=error_words,
         factor=factor_range,
@@ -143,7 +143,7 @@ class MotionPart:
 def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPart]:
     """Return the cases with plots or an animation, which is read from the folder of the page.
 
-    find: returns a plot by its kind and names, None if there is none.
+    find: returns a plot by its kind and names; None if there is none.
     """
     kinds = {s.case: list(_linkage(s.case, find)) for s in results.skeletons}
     parts = [

@@ -1,4 +1,4 @@
-"""Content of the PDF: texts, tables and drawings of the page, in its order, as plain data."""
+"""The content of the PDF as plain data: texts, tables and drawings of the page, in its order."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from reports.text.method import METHOD_NOTE
 from reports.text.pin_sentence import drawing_caption, pin_sentence
 
 Content = dict[str, Any]
-# Of the drawing of the linkage, as reports/templates/linkage.css has it in light colours
+# Style of the drawing of the linkage: the light colours of reports/templates/linkage.css
 PAPER_STYLE = (
     "text{font-family:'Libertinus Serif';font-size:14px}.force{font-size:12.5px;fill:#5a6068}"
     ".b{font-weight:700}.link{fill:none;stroke:#a5a8ac;stroke-linecap:round}.body{fill:#ececee}"
@@ -50,7 +50,7 @@ PAPER_STYLE = (
     "{font-size:11px;text-anchor:middle}text.letter{fill:#5a6068}"
     "text.view-title{font-size:12px;fill:#5a6068}"
 )
-CURVE_STYLE = (  # as reports/templates/overview.css has it
+CURVE_STYLE = (  # as in reports/templates/overview.css
     "text{font-family:'Libertinus Serif';font-size:12px;fill:#5a6068}polyline,path{fill:none}"
     "polyline{stroke:#0b5cad;stroke-width:2}.lug{stroke:#a8211b;stroke-width:1.5}"
     ".frame{stroke:#b5bac1}.limit{stroke:#1d1f23;stroke-dasharray:3 3}"
@@ -99,7 +99,7 @@ def document(
 
 
 def _on_paper(overview: Content) -> Content:
-    """Return the first screen with drawings that have their own colours."""
+    """Return the first screen with drawings that contain their style."""
     drawings = {
         "linkage": _styled(overview["linkage"], PAPER_STYLE),
         "curve": _styled(overview["curve"], CURVE_STYLE),
@@ -111,7 +111,7 @@ def _on_paper(overview: Content) -> Content:
 
 
 def _styled(drawing: str | None, style: str) -> str | None:
-    """Return an SVG drawing without links and with its style."""
+    """Return an SVG drawing without hyperlinks and with its style."""
     if not drawing:
         return None
     plain = re.sub(r"</?a\b[^>]*>", "", drawing)
@@ -126,7 +126,7 @@ def _factors(results: Results) -> Content | None:
 
 
 def _envelope(results: Results) -> Content | None:
-    """Return the utilisations of pins in cases, in blocks as wide as the paper."""
+    """Return the utilisations of pins in cases, in blocks that fit the width of the paper."""
     utilisations = matrix(results)
     if utilisations is None:
         return None

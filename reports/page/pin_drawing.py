@@ -1,4 +1,4 @@
-"""A pin's profile as an SVG drawing: section, sizes, bands, zones, loads, stress along it."""
+"""A pin's profile as an SVG drawing: section, sizes, bands, zones, loads, stress along the pin."""
 
 from __future__ import annotations
 
@@ -21,23 +21,30 @@ from reports.tables.stress.singular_zones import ShownZone
 HIDDEN_LINE_STYLE = 'stroke-dasharray="4 2"'
 
 
-DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = 480.0, 52.0, 0.22  # the last in widths
-LOCAL_SOLID_OFFSET = 3.0  # what the box of a local solid stands off the pin
+DRAWING_WIDTH, DRAWING_MARGIN, MAX_HEIGHT_RATIO = (
+    480.0,
+    52.0,
+    0.22,
+)  # the ratio is of height to width
+LOCAL_SOLID_OFFSET = 3.0  # gap between the pin and the box of a local solid
 TEXT_LINE_HEIGHT = 14.0
 PATTERNS = (
     '<defs><pattern id="held" width="6" height="6" patternUnits="userSpaceOnUse" '
     'patternTransform="rotate(45)"><rect width="6" height="6" fill="#fff"/>'
     f'<rect width="2" height="6" fill="#777"/></pattern>{STRIPE_PATTERN}{LUG_PATTERN}</defs>'
 )
-LUG_HEIGHT_SHARE = 0.45  # of a lug's height, by which drawings with lugs may be higher than others
+LUG_HEIGHT_SHARE = 0.45  # of a lug's diameter, which counts for the scale; lugs may stand out
 FILL_COLOURS = {"band": "#9dbbe0", "held": "url(#held)", "plain": "#ececec"}
 
 
 @dataclass(frozen=True)
 class _Piece:
-    """A segment on the drawing: x to x + width, radii at its two ends in the same unit.
+    """A segment on the drawing, in pixels.
 
-    extent: its length on the pin. label, size, length, force: the words at it.
+    x, width: its left end and width.
+    extent: its length on the pin.
+    radii, bores: radii of surface and bore at its two ends.
+    label, size, length, force: the words at the segment.
     """
 
     x: float
@@ -68,11 +75,14 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Layout:
-    """The place at which a pin is drawn.
+    """The place at which a pin is drawn, in pixels.
 
-    left, scale, length: of the pin. radius: the largest. tops: rows of the labels, of segments
-    that have words.
-    lines: of a label. axis: its y. foot: y below the section and the arrows there.
+    left: the left end of the pin. scale: pixels per length. length: of the pin, in its own unit.
+    radius: the largest, of pin or lugs.
+    tops: the rows of the labels of segments that have words.
+    lines: the number of lines of a label.
+    axis: the y of the axis.
+    foot: the y below the section and the arrows there.
     """
 
     left: float
@@ -95,7 +105,9 @@ class _Layout:
 
     @staticmethod
     def of(pieces: list[_Piece], along: StressAlong | None, around: float = 0.0) -> _Layout:
-        """Return the layout of a pin; around: diameter of the largest lug about it."""
+        """Return the layout of a pin. around: the diameter of the largest lug, in the unit of the
+        pin.
+        """
         labelled = [p for p in pieces if any(p.words)]
         tops = rows([p.middle for p in labelled], [max(map(wide, p.words)) for p in labelled])
         lines = 3 if any(p.force for p in pieces) else 2
@@ -122,9 +134,10 @@ def draw_pin(
 ) -> str:
     """Return the drawing as an <svg> element, in which all text is escaped.
 
-    zones: one per circle. places: of the stress of rows.
+    zones: one for each circle.
     width: of the drawing, in pixels; letters have the size 11.
-    along: stress along the pin and loads, of the governing case.
+    places: the places of the largest stress of rows.
+    along: the loads and the stress along the pin, in the governing case.
     """
     around = max((lug.outer_diameter for lug in shape.lugs), default=0.0)
     pieces = _pieces(shape, units, width, along, around)
@@ -198,7 +211,7 @@ def _body(shape: PinShape, pieces: list[_Piece], at: _Layout, marks: ZoneMarks) 
 
 
 def _radius(z: tuple[float, float], pieces: list[_Piece], at: _Layout) -> float:
-    """Return the largest drawn radius of the pin between two z."""
+    """Return the largest drawn radius of the pin between two values of z."""
     left, right = (at.left + at.scale * x for x in z)
     return max((p.radius for p in pieces if p.x < right and left < p.x + p.width), default=0.0)
 
@@ -211,7 +224,7 @@ def _pressed(along: StressAlong, pieces: list[_Piece], at: _Layout, units: Units
 
 
 def _loads(along: StressAlong, shape: PinShape, pieces: list[_Piece], at: _Layout) -> list[str]:
-    """Return the arrow of every force, outside of its lug if that is drawn."""
+    """Return the arrow of every force, drawn outside its lug if there is one."""
     largest = max((load.size for load in along.loads), default=0.0)
     outer = {lug.connection: 0.5 * at.scale * lug.outer_diameter for lug in shape.lugs}
     parts = []
@@ -250,7 +263,7 @@ def _pieces(
         size = f"⌀{_from_to(diameters)}" + (f" / {_from_to(bores)}" if any(bores) else "")
         radii, holes = ((scale * a / 2, scale * b / 2) for a, b in (diameters, bores))
         force = _force(along, units, (x - start) / scale, (x - start) / scale + long)
-        # A gap as thick as the segment before needs no words
+        # A segment without a label repeats no size of the segment before it.
         shown = "" if not label and size == last_size else size
         last_size = size
         words = (label, shown, drawn(long), kind, force)
@@ -260,18 +273,18 @@ def _pieces(
 
 
 def _force(along: StressAlong | None, units: Units, start: float, end: float) -> str:
-    """Return the size of the forces on a segment between two z; empty without any."""
+    """Return the sizes of the forces on a segment between two values of z; empty without any."""
     forces = [x.size for x in along.loads if start < x.z < end] if along else []
     return ", ".join(f"{engineering(size)} {units.force}" for size in forces if size > 0.0)
 
 
 def _from_to(ends: tuple[float, float]) -> str:
-    """Return one size, or the sizes at both ends of a cone."""
+    """Return the size, or for a cone the sizes at both ends."""
     return "–".join(dict.fromkeys(drawn(size) for size in ends))
 
 
 def _section(piece: _Piece, axis: float) -> str:
-    """Return the section: the walls above and below the axis."""
+    """Return the section of a segment: the walls above and below the axis."""
     fill = FILL_COLOURS.get(piece.kind, FILL_COLOURS["plain"])
     paint = f'fill="{fill}" stroke="{INK_COLOUR}" stroke-width="1"/>'
     if piece.radii[0] != piece.radii[1] or piece.bores[0] != piece.bores[1]:
@@ -292,14 +305,16 @@ def _cone(piece: _Piece, axis: float, side: float) -> str:
 
 
 def _walls(piece: _Piece, axis: float) -> list[tuple[float, float, float, float]]:
-    """Return x, y, width and height of the walls; for cones of the rectangles around them."""
+    """Return x, y, width and height of the walls; for a cone of the rectangles that
+    enclose them.
+    """
     bore = min(piece.bores)
     wall = piece.radius - bore
     return [(piece.x, y, piece.width, wall) for y in (axis - piece.radius, axis + bore)]
 
 
 def _solid(left: float, right: float, axis: float, pieces: list[_Piece]) -> str:
-    """Return the boundary of a local solid."""
+    """Return the box that marks a local solid."""
     radius = (
         max(p.radius for p in pieces if p.x < right and left < p.x + p.width) + LOCAL_SOLID_OFFSET
     )
@@ -337,7 +352,7 @@ def _dimension(left: float, right: float, y: float, from_y: float) -> str:
 def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
     """Return the SVG of a cut on a pin that starts at x = left, with its axis at y = axis.
 
-    All lengths of the drawing are in pixels.
+    left, axis: pixels. scale: pixels per length.
     """
 
     def at(z: float, x: float) -> tuple[float, float]:
@@ -346,7 +361,7 @@ def draw_cut(cut: CutShape, left: float, axis: float, scale: float) -> str:
     out = []
     for z0, x0, z1, x1 in cut.notches:
         (a, c), (b, d) = at(z0, x0), at(z1, x1)
-        away = 1.5 if d > c else -1.5  # over the outline, too
+        away = 1.5 if d > c else -1.5  # covers the outline, too
         out.append(f'<path d="M{a:.2f},{d + away:.2f}H{b:.2f}V{c:.2f}H{a:.2f}Z" fill="#fff"/>')
     for points, hidden in cut.lines:
         drawn = " ".join("{:.2f},{:.2f}".format(*at(z, x)) for z, x in points)

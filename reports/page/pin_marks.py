@@ -13,7 +13,7 @@ from reports.data.results import Results
 from reports.format.ranges import factor_range
 from reports.page.linkage_panel import Instant, Mark
 
-SYMBOLS = {  # of an outcome: a cross, a tick, half a disc, a question mark
+SYMBOLS = {  # of outcomes: a cross, a tick, half a disc, a question mark
     FAILS: '<circle r="9"/><path class="k" d="M-4-4L4 4M4-4L-4 4"/>',
     SAFE: '<circle r="8.5" class="h"/><path d="M-4 0l3 4l5-8"/>',
     DEPENDS: '<circle r="8.5" class="h"/><path class="hf" d="M0-8.5a8.5 8.5 0 0 0 0 17z"/>',
@@ -24,7 +24,9 @@ SYMBOLS |= {YIELDS: SYMBOLS[FAILS], BELOW_YIELD: SYMBOLS[SAFE]}
 
 
 def governing_instant(results: Results, lines: Sequence[PinLine]) -> Instant | None:
-    """Return the linkage in the case and at the instant of the worst pin; None without one."""
+    """Return the linkage in the case and at the instant of the worst pin whose case has a linkage;
+    None without one.
+    """
     for line in lines:
         skeleton = next((s for s in results.skeletons if s.case == line.row.case), None)
         if skeleton is None:
@@ -40,7 +42,7 @@ def governing_instant(results: Results, lines: Sequence[PinLine]) -> Instant | N
 def pin_marks(at: Instant, lines: Iterable[PinLine], anchors: Mapping[str, str]) -> list[Mark]:
     """Return a mark for each pin at a joint of the linkage.
 
-    anchors: of the pins' parts of the page.
+    anchors: of the sections of the pins on the page, by pin.
     """
     joints = _joints_of_pins(at)
     return [
@@ -56,7 +58,7 @@ def pin_marks(at: Instant, lines: Iterable[PinLine], anchors: Mapping[str, str])
 
 
 def _joints_of_pins(at: Instant) -> dict[str, str]:
-    """Return the joint at which each pin sits."""
+    """Return the joint of each pin."""
     if at.table is None:
         return {}
     by_connection = {name: joint for name, _, joint in at.skeleton.connections}
@@ -71,6 +73,6 @@ def _symbol(line: PinLine, anchor: str) -> str:
     outcome = line.outcome.replace(" ", "-")
     title = f"<title>{escape(line.pin)}: {escape(line.outcome)}</title>"
     symbol = f'<g class="pin {outcome}">{title}{SYMBOLS[line.outcome]}</g>'
-    # By keyboard the table beside the drawing has the same links, the worst pin first.
+    # Not in the tab order, since the table next to the drawing has the same links.
     link = f'<a href="#{escape(anchor)}" tabindex="-1">{symbol}</a>'
     return link if anchor else symbol

@@ -1,4 +1,4 @@
-"""The data of each pin and each case on the page."""
+"""The data on the page of each pin and each case."""
 
 from __future__ import annotations
 
@@ -31,9 +31,13 @@ class PinCase:
     """A pin in one case on the page.
 
     governs: whether it is the worst case of the pin, or of one of its checks.
-    checks: hand checks. margins: of safety. places: where stress is read. joint: contact with lugs.
-    opinion: of CalculiX. ratio: computed maximum over the published one. clauses: of its lugs by
-    several codes.
+    checks: hand checks.
+    margins: of safety.
+    places: where stress is read.
+    joint: contact with lugs.
+    opinion: of CalculiX.
+    ratio: computed over published maximum.
+    clauses: of its lugs by several codes.
     """
 
     result: PinResult
@@ -55,10 +59,13 @@ class PinCase:
 class PinPart:
     """One pin on the page.
 
-    anchor: on the page. outcome: of its worst check. material: in words. drawing: of the pin.
-    table: a line for every case, the worst first; outcomes: of their stress.
-    cases: the worst first. moving: cases with a motion. views: in 3D. lets_go: the ladder of load
-    factors in the worst case.
+    anchor: of its section on the page.
+    outcome: of its worst check.
+    material: in words.
+    table: a line for every case, the worst first. outcomes: of the stress in these lines.
+    cases: the worst first. moving: cases with a motion.
+    views: in 3D.
+    lets_go: the load factors at which parts let go, in the governing case.
     """
 
     pin: str
@@ -75,7 +82,7 @@ class PinPart:
 
 
 def pin_parts(results: Results, drawings: dict[str, str]) -> list[PinPart]:
-    """Return the pins in the order of the results, then those that were not solved."""
+    """Return the pins in the order of the results, followed by those that were not solved."""
     shapes = {shape.pin: shape for shape in results.shapes}
     names = dict.fromkeys([p.pin for p in results.pins] + list(shapes))
     ladders, worst = lets_go_parts(results), worst_checks(results)
@@ -128,7 +135,7 @@ def _case(results: Results, row: PinResult, governs: bool) -> PinCase:
 
 
 def governing_names(results: Results, pin: str) -> set[str]:
-    """Return the cases that govern a pin: by its stress, and by another check."""
+    """Return the cases that govern a pin, by its stress and by its worst other check."""
     rows = governing_rows(results)
     by_check = [margin.case for margin in governing(results) if margin.pin == pin]
     return {*([rows[pin].case] if pin in rows else []), *by_check[:1]}

@@ -1,4 +1,4 @@
-"""How to read the pins: conventions and exclusions that all of them share, each said once."""
+"""The conventions and exclusions that apply to all pins of the page, each stated once."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ SIGNS_NOTE = (
 
 
 def reading_parts(results: Results) -> dict[str, str]:
-    """Return notes by heading: only what some pin of the results needs."""
+    """Return the notes by heading, only those that apply to some pin of the results."""
     units, rows = results.units, results.pins
     words = {"length": units.length, "stress": units.stress}
     joints = [row.joint for row in rows if row.joint is not None]
@@ -91,7 +91,9 @@ def reading_parts(results: Results) -> dict[str, str]:
 
 
 def signs() -> str:
-    """Return the axes of a pin, and a part of it under positive shear and moment, as SVG."""
+    """Return an SVG of the axes of a pin, and of a part of the pin under positive shear
+    and moment.
+    """
     ink = f'fill="none" stroke="{INK_COLOUR}" stroke-width="1.3"'
     load = f'fill="none" stroke="{LOAD_COLOUR}" stroke-width="2" marker-end="url(#sign)"'
     return "".join(

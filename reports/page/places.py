@@ -1,4 +1,4 @@
-"""The page's part on where a pin's stress is read: surface, section and contact."""
+"""The page's part on the places at which a pin's stress is read: surface, section and contact."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from reports.format.ranges import factor_text, used_text
 from reports.tables.column import Column, Grid, Table, read_only, texts
 from reports.tables.stress.places import PlaceRow, place_rows
 
-MIN_RELATIVE_DISTANCE = 1e-6  # of the place of the largest stress: no distance is smaller
+MIN_RELATIVE_DISTANCE = 1e-6  # over the largest coordinate; smaller distances are shown as zero
 PLACE_NAMES = {"beneath": "beneath contact"}
 SECTION_NOTE = "The row's stress is the larger of surface and section."
 PLACES_NOTE = (
@@ -34,7 +34,8 @@ CONTACT_EDGES_NOTE = (
 
 @dataclass(frozen=True)
 class PlacesPart:
-    """The places where stress is read, the loads at the section, and the reach of contact stress.
+    """The places at which stress is read, with notes on the loads of the section and the reach of
+    contact stress.
 
     edges: stress at the edges of lugs, if there are any.
     """
@@ -82,7 +83,7 @@ def _remark(row: PlaceRow) -> str:
 
 
 def _at(row: PlaceRow) -> list[str]:
-    """Return the coordinates that a place has."""
+    """Return the coordinates of a place as text; empty for those that it lacks."""
     known = [x for x in row.at if x is not None]
     texts = components(known, max(map(abs, known))) if known[1:] else map(engineering, known)
     return [*[""] * (len(row.at) - len(known)), *texts]
@@ -106,7 +107,7 @@ def _acting(section: SectionPlace | None, units: Units) -> str:
 
 
 def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
-    """Return how far from pressed cells stress exceeds yield, and the permitted stress."""
+    """Return a sentence on the depths to which stress exceeds yield, and the permitted stress."""
     if contact is None or contact.reach is None:
         return ""
     reaches = [("yield", contact.reach)]
@@ -126,9 +127,9 @@ def _reach(pin: PinResult, contact: ContactPlace | None, units: Units) -> str:
 
 
 def _edges(edges: tuple[ContactEdge, ...], units: Units, least: float) -> Grid:
-    """Return the table of distances from the edges of lugs.
+    """Return the table of the contact stress at the edges of lugs.
 
-    least: distances below this are zero.
+    least: smaller distances are shown as zero.
     """
     peak: list[Column[ContactEdge]] = [
         read_only("peak pressure", lambda edge: engineering(edge.max_pressure, 3), "stress"),

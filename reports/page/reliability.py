@@ -21,7 +21,7 @@ LAW_COLUMNS: list[Column[tuple[str, str]]] = [
 
 
 def distribution_plots(reliability: Reliability) -> list[Plot]:
-    """The plots of the page, of the rows with the largest probabilities."""
+    """Return the plots of the page, for the rows with the largest probabilities."""
     worst = sorted(reliability.risks, key=lambda risk: -risk.most)[:MAX_DISTRIBUTION_PLOTS]
     return [plot for risk in worst if (plot := distribution_plot(reliability, risk))]
 
@@ -29,7 +29,7 @@ def distribution_plots(reliability: Reliability) -> list[Plot]:
 def write_reliability_page(
     reliability: Reliability, plots: Iterable[tuple[Plot, str]], path: Path
 ) -> None:
-    """Write reliability.html. plots: with their drawings as SVG."""
+    """Write reliability.html. plots: each with its drawing as SVG."""
     laws = Table("laws", LAW_COLUMNS, reliability.parameters)
     text = rendered(
         "reliability.html.j2",

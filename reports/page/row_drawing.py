@@ -1,4 +1,4 @@
-"""The rows of a pin as a drawing: the pin with its loads, and the stress along it."""
+"""The drawing of a pin with its loads and the stress along it."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from reports.tables.stress.singular_zones import circles, pin_zones
 
 
 def draw_row(results: Results, row: PinResult) -> str:
-    """Return the pin of a row as an <svg> element with its stress along z, loads and maximum.
+    """Return the pin of a row as an <svg> element with its stress along z, its loads and its
+    maximum.
 
-    Empty for a pin without a profile.
+    The text is empty for a pin without a profile.
     """
     shape = next((s for s in results.shapes if s.pin == row.pin), None)
     if shape is None:
@@ -24,8 +25,8 @@ def draw_row(results: Results, row: PinResult) -> str:
 
 
 def draw_shape(shape: PinShape, results: Results, width: float = DRAWING_WIDTH) -> str:
-    """Return a pin as an <svg> element with the zones and places of its rows, and the stress and
-    loads of the one that governs.
+    """Return a pin as an <svg> element, with the zones and places of all its rows, and the stress
+    and loads of its governing row.
     """
     zones = circles(zone for case in pin_zones(results, shape.pin).values() for zone in case)
     marks = place_marks(results, shape.pin, sum(s[0] for s in shape.segments))

@@ -1,4 +1,4 @@
-"""Data for the page's scripts: libraries, plots, the content of the PDF, colours."""
+"""Data for the page's scripts: libraries, plots, the content of the PDF, and colours."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ from reports.plots.theme import on_page
 
 SCRIPT_FILES = ("vega.min.js", "vega-lite.min.js", "vega-interpreter.js")
 REPORT_PAGE = "report.html"
-MAX_UNPACKED_SIZE = 512 * MB  # of what a page has packed
-# As reports.format.file_names makes them
+MAX_UNPACKED_SIZE = 512 * MB  # of a compressed part of a page
+# Names made by reports.format.file_names
 PLOT_NAME_PATTERN = re.compile(r"[A-Za-z][A-Za-z0-9_.~%-]*")
 MAX_PLOT_NAME_LENGTH = 2000
 PACKED_SCRIPT_PATTERN = r'<script type="text/plain" id="{}">([\w+/=]+)</script>'
 
 
 def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[str, str]:
-    """Return compressed texts, and the configuration of the plots as JSON.
+    """Return the compressed parts of the page, and the configuration of the plots as JSON.
 
     document: the content of the PDF.
     """
@@ -47,7 +47,7 @@ def script_part(plots: Mapping[str, Plot], document: Mapping[str, Any]) -> dict[
 def plots_of(page: str) -> list[Plot]:
     """Return the plots of a page.
 
-    Raises: Damaged, also for a plot with an address, or a name that leads out of the folder.
+    Raises: Damaged, also for a plot with an address, or with a name that leads out of the folder.
     """
     content = _read(page, "plots")
     if content is None:
@@ -62,9 +62,9 @@ def plots_of(page: str) -> list[Plot]:
 
 
 def document_of(page: str) -> dict[str, Any] | None:
-    """Return the content of a page's PDF; None in a page that has none.
+    """Return the content of a page's PDF; None for a page without one.
 
-    Raises: Damaged.
+    Raises: Damaged, also for a drawing that refers to something outside itself.
     """
     content: dict[str, Any] | None = _read(page, "paper")
     if content is None:
@@ -104,7 +104,7 @@ def _caption_and_spec(pair: list[Any]) -> list[Any]:
 
 
 class _Plots(RootModel[dict[str, Annotated[list[Any], AfterValidator(_caption_and_spec)]]]):
-    """The plots of a page: by name a caption and a specification."""
+    """The plots of a page: by name, a caption and a specification."""
 
 
 class _Block(JsonPart):

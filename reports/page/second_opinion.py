@@ -23,7 +23,9 @@ BandPart = tuple[BandOpinion, tuple[str, float, float]]  # a band and one of LEN
 
 @dataclass(frozen=True)
 class OpinionPart:
-    """The agreement with CalculiX, sentences, and loads per length at the lugs' ends and middle."""
+    """The agreement with CalculiX, sentences, and the loads per length at the ends and the middle
+    of lugs.
+    """
 
     outcome: str
     sentences: list[str]
@@ -56,7 +58,10 @@ def _loads(bands: tuple[BandOpinion, ...], units: Units) -> Grid:
 
 
 def _mean(ends: Sequence[float], load: Sequence[float], low: float, high: float) -> float:
-    """Return the mean, between two fractions of the length, of a load constant between `ends`."""
+    """Return the mean of a piecewise constant load between two fractions of the length.
+
+    ends: the boundaries of the pieces, one more than the loads.
+    """
     whole = ends[-1] - ends[0]
     z0, z1 = ends[0] + low * whole, ends[0] + high * whole
     shared = (max(0.0, min(b, z1) - max(a, z0)) for a, b in pairwise(ends))

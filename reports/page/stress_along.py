@@ -1,4 +1,4 @@
-"""What the drawing of a pin shows of its governing case: stress along the pin, and its loads."""
+"""The governing case of a pin for its drawing: the stress along the pin, and its loads."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ from reports.data.row import PinResult
 from reports.data.surface import Surface, SurfaceCase
 from reports.plots.stress.surface import outline_sides, unread_points
 
-MIN_OUT_OF_PLANE_SHARE = 0.3  # of a force: less of it is not drawn out of the plane
-SOLID_BINS = 120  # along a pin that is not a body of revolution
+MIN_OUT_OF_PLANE_SHARE = 0.3  # of a force; a smaller part out of the plane is not drawn
+SOLID_BINS = 120  # along a pin that is not a body of revolution; each has one stress
 
 
 @dataclass(frozen=True)
 class LoadMark:
     """The force of a link on the pin.
 
-    band: in its lug. z: middle of it. size: of the force. up, towards: its parts upwards on the
-    drawing and towards the viewer; both 0 where the band is clamped.
+    band: on which the force acts. z: middle of the band. size: of the force.
+    up, towards: its components upwards on the drawing and towards the viewer; both 0 where the band
+    is clamped.
     """
 
     band: str
@@ -41,13 +42,15 @@ class LoadMark:
 
 @dataclass(frozen=True)
 class StressAlong:
-    """Stress along a pin in a case, and the loads, at the governing instant.
+    """The stress along a pin in a case, and its loads, at the governing instant.
 
-    angle: of the drawing's upward direction from x, degrees. loads: of the links.
-    surface: curves z (N,), stress (N,), which is NaN where it is not read.
-    section: the largest stress of sections, likewise, without points where it is not known.
-    line_loads: of lugs on the pin, between two z each: load per length, upwards.
-    z, maximum: of the row. allowed: the stress that the required factor permits.
+    angle: of the drawing's upward direction from x, degrees.
+    loads: of the links.
+    surface: curves of z (N,) and stress (N,), which is NaN where stress is not read.
+    section: the largest stress of sections, likewise; without points where it is not known.
+    line_loads: of the lugs on the pin: start z, end z and load per length upwards of each ring.
+    z, maximum: of the row.
+    allowed: the stress that the required factor permits.
     """
 
     case: str
@@ -67,7 +70,7 @@ class StressAlong:
 
     @property
     def top(self) -> float:
-        """The largest stress of surface, section and row; 1 of a pin without stress."""
+        """The largest stress of surface, section and row; 1 for a pin without stress."""
         curves = [s for _, s in self.surface] + [self.section[1]]
         largest = [float(np.nanmax(s)) for s in curves if np.isfinite(s).any()]
         return max([*largest, self.maximum or 0.0]) or 1.0
@@ -79,7 +82,7 @@ def governing_rows(results: Results) -> dict[str, PinResult]:
 
 
 def stress_along(results: Results, shape: PinShape) -> StressAlong | None:
-    """Return what is drawn of a pin's governing case; None where the pin was not solved."""
+    """Return the stress and loads of a pin's governing case; None if the pin was not solved."""
     row = governing_rows(results).get(shape.pin)
     if row is None or row.max_von_mises is None:
         return None
@@ -103,7 +106,7 @@ def stress_along(results: Results, shape: PinShape) -> StressAlong | None:
 
 
 def surface_of(results: Results, row: PinResult) -> tuple[Surface, SurfaceCase] | tuple[None, None]:
-    """Return the surface of a row's pin and its case; None where there are none."""
+    """Return the surface of a row's pin with the row's case; a pair of None if there is none."""
     for surface in results.surfaces:
         for case in surface.cases:
             if (surface.pin, case.case) == (row.pin, row.case):
@@ -114,9 +117,9 @@ def surface_of(results: Results, row: PinResult) -> tuple[Surface, SurfaceCase] 
 def _forces(
     row: PinResult, shape: PinShape, case: SurfaceCase | None
 ) -> list[tuple[str, float, Floats]]:
-    """Return band, z and force (3,) of every link, and of lugs that no link holds.
+    """Return band, z and force (3,) of every link, and of the lugs on which no link acts.
 
-    Without fields of the pin they are in world axes.
+    The forces are in pin axes, or without fields of the pin in world axes.
     """
     bands = _bands(shape)
     if case is None:
@@ -144,7 +147,7 @@ def _lugs(row: PinResult) -> dict[str, Floats]:
 
 
 def _bands(shape: PinShape) -> dict[str, tuple[float, float]]:
-    """Return the middle and the diameter of every named segment."""
+    """Return the z of the middle and the diameter of every segment, by label."""
     z, bands = 0.0, {}
     for length, diameter, _, label, _ in shape.segments:
         bands[label] = z + 0.5 * length, diameter
@@ -153,7 +156,9 @@ def _bands(shape: PinShape) -> dict[str, tuple[float, float]]:
 
 
 def _upwards(forces: list[Floats]) -> float:
-    """Return the direction of the largest force from x, degrees, towards x and y if possible."""
+    """Return the angle of the largest force from x, degrees, reversed if that points it towards x
+    and y.
+    """
     x, y, _ = max(forces, key=lambda f: float(np.hypot(f[0], f[1])), default=np.zeros(3)).tolist()
     if x + y < 0.0:
         x, y = -x, -y
@@ -182,7 +187,9 @@ def _curves(surface: Surface, case: SurfaceCase) -> tuple[tuple[Floats, Floats],
 def _line_loads(
     row: PinResult, marks: tuple[LoadMark, ...]
 ) -> Iterator[tuple[float, float, float]]:
-    """Yield the ends of rings and the part of their load per length upwards on the drawing."""
+    """Yield the ends of each ring, and the component of its load per length upwards on
+    the drawing.
+    """
     by_band = {mark.band: mark for mark in marks if mark.size > 0.0}
     for band in row.joint.bands if row.joint else ():
         if band.name in by_band:

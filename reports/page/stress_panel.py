@@ -1,4 +1,4 @@
-"""The stress along a pin under its drawing, on the drawing's own z axis, and its load arrows."""
+"""The stress along a pin below its drawing, on the same z axis, and the arrows of its loads."""
 
 from __future__ import annotations
 
@@ -14,19 +14,22 @@ from reports.page.drawing_zones import ZONE_COLOUR
 from reports.page.stress_along import LoadMark, StressAlong
 
 PANEL_HEIGHT, KEY_HEIGHT = 84.0, 18.0
-HEADROOM_FACTOR = 1.12  # over the largest stress
-MIN_TOP = 1e-300  # of an axis: what is smaller is nothing
-MAX_TICKS = 4  # of the stress
+HEADROOM_FACTOR = 1.12  # upper end of the axis over the largest stress
+MIN_TOP = 1e-300  # upper end of an axis; a smaller one counts as zero
+MAX_TICKS = 4  # of the stress axis, without zero
 ARROW_ROOM, MIN_ARROW_LENGTH = 26.0, 10.0  # of load arrows
 LOAD_COLOUR, SECTION_COLOUR = "#0b5cad", "#9a4a00"
 CURVE_STYLE = 'fill="none" stroke-width="1.4" stroke-linejoin="round"'
-MIN_SHARE = 0.02  # of the largest force: a smaller part is not drawn
-LETTER_HEIGHT = 12.0  # of labels that must not meet
-SYMBOL_RADIUS = 5.0  # of a force out of the plane
+MIN_SHARE = 0.02  # of the largest force; a smaller component is not drawn
+LETTER_HEIGHT = 12.0  # of labels that must not overlap
+SYMBOL_RADIUS = 5.0  # of the symbol of a force out of the plane
 
 
 class StressPanel:
-    """The curves of a pin that is drawn at `scale` from `left`, `length` long, from y = `top`."""
+    """The panel with the stress curves of a pin, with its upper edge at y = `top`.
+
+    drawn: left end, scale and length of the drawn pin.
+    """
 
     def __init__(self, along: StressAlong, drawn: tuple[float, float, float], top: float) -> None:
         self.along = along
@@ -34,14 +37,14 @@ class StressPanel:
         self.right = self.left + self.scale * length
         self.top, self.foot = top + KEY_HEIGHT, top + KEY_HEIGHT + PANEL_HEIGHT
         self.highest = HEADROOM_FACTOR * along.top
-        self.key_end = self.left  # of the words above the panel
+        self.key_end = self.left  # right end of the key above the panel
 
     def x(self, z: float) -> float:
         """The abscissa of a place on the pin."""
         return self.left + self.scale * z
 
     def y(self, stress: float) -> float:
-        """The ordinate of a stress; of one beyond the panel its upper edge."""
+        """The ordinate of a stress, at most the upper edge of the panel."""
         return self.foot - PANEL_HEIGHT * min(stress / self.highest, 1.0)
 
     def draw(self, unit: str) -> list[str]:
@@ -77,7 +80,7 @@ class StressPanel:
         return [*parts, text(x, y, f"[{unit}]", anchor="start")]
 
     def _curve(self, z: Floats, stress: Floats, style: str) -> list[str]:
-        """Return a line for every part of a curve that is known."""
+        """Return a line for every part of a curve whose values are known."""
         parts = []
         finite = np.isfinite(stress)
         for known, group in groupby(range(len(z)), key=lambda k: bool(finite[k])):
@@ -87,7 +90,9 @@ class StressPanel:
         return parts
 
     def _allowed(self) -> list[str]:
-        """Return the line at the stress that the required factor permits, where it is exceeded."""
+        """Return the line at the stress that the required factor permits, if it is within the
+        panel.
+        """
         allowed = self.along.allowed
         if allowed is None or allowed > self.highest:
             return []
@@ -96,7 +101,7 @@ class StressPanel:
         x, below, maximum, anchor = self._label()
         end = x + wide(maximum) if anchor == "start" else x
         start, at = self.right - 2.0 - wide(words), y - 3.0
-        if self.key_end > start and at - (self.top - 6.0) < LETTER_HEIGHT:  # where the key stands
+        if self.key_end > start and at - (self.top - 6.0) < LETTER_HEIGHT:  # the key is there
             at = y + LETTER_HEIGHT
         meets = end > start and abs(below - at) < LETTER_HEIGHT
         style = 'class="allowed" stroke-dasharray="2 3"'
@@ -105,7 +110,7 @@ class StressPanel:
                      halo=True, anchor="end")]  # fmt: skip
 
     def _label(self) -> tuple[float, float, str, str]:
-        """Return where and how the maximum is written: x, y, text and anchor."""
+        """Return the label of the maximum: x, y, text and anchor."""
         x, y = self.x(self.along.z or 0.0), self.y(self.along.maximum or 0.0) + 4.0
         words = f"max {engineering(self.along.maximum)}"
         if x - 7.0 - wide(words) < self.left:
@@ -123,7 +128,7 @@ class StressPanel:
 
 
 def ticks(top: float) -> list[float]:
-    """Return round values from zero up to `top`, at most MAX_TICKS besides zero."""
+    """Return round values from zero to `top`, at most MAX_TICKS besides zero."""
     if not top > MIN_TOP:
         return [0.0]
     power = 10.0 ** floor(log10(top / MAX_TICKS))
@@ -132,9 +137,11 @@ def ticks(top: float) -> list[float]:
 
 
 def arrow(load: LoadMark, x: float, axis: float, radius: float, largest: float) -> list[str]:
-    """Return the arrow of a force, and its symbol where it leaves the plane of the drawing.
+    """Return the arrow of a force, and its symbol if it leaves the plane of the drawing.
 
-    x: of the middle of the band, whose axis and radius are drawn at these. largest: of all forces.
+    x: of the middle of the band.
+    axis, radius: y of the axis and radius of the band, as drawn.
+    largest: of all forces.
     """
     parts = []
     if largest > 0.0 and abs(load.up) > MIN_SHARE * largest:
@@ -165,9 +172,9 @@ def arrow(load: LoadMark, x: float, axis: float, radius: float, largest: float) 
 
 
 def triad(x: float, y: float, angle: float) -> list[str]:
-    """Return the axes of the drawing from (x, y): z to the right, and the upward direction.
+    """Return the axes of the drawing at (x, y): z to the right, and the upward direction.
 
-    angle: of that direction from x, degrees.
+    angle: of the upward direction from x, degrees.
     """
     up = "x" if abs(angle) < 0.5 else f"{angle:.0f}°".replace("-", "−")
     return [

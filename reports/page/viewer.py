@@ -1,4 +1,4 @@
-"""The interactive 3D view of a pin: its data for the page."""
+"""The data of the interactive 3D view of a pin."""
 
 from __future__ import annotations
 
@@ -23,25 +23,27 @@ from reports.format.script_json import script_json
 from reports.format.words import verdict_words
 from reports.tables.column import Column, Grid, Table, read_only
 
-MAX_LOAD_INTEGER = 32767  # loads are integers up to this, scaled by the largest
-# The same of stresses, scaled by the largest at a point; thinning leaves 8e-3 of it
+MAX_LOAD_INTEGER = 32767  # loads are stored as integers up to this, scaled by the largest
+# The same for stresses, scaled by the largest at a point; thinning has an error of 8e-3 of it.
 MAX_STRESS_INTEGER = 4095
-# The same of displacements, which are shown by nothing but the shape
+# The same for displacements, which only the deformed shape shows.
 MAX_DISPLACEMENT_INTEGER = 127
-MAX_SECTION_INTEGER = 4095  # stresses on a section are integers up to this, at the maximum
-PRESSURE_PERCENTILE = 90.0  # per cent of cells under pressure whose colours differ
-# Of the maximum; if the whole surface is below it, the maximum is inside
+MAX_SECTION_INTEGER = 4095  # the same for stresses on a section, scaled by their maximum
+PRESSURE_PERCENTILE = 90.0  # per cent of the pressed cells are within the range of colours
+# Of the maximum; if the whole surface is below this share, the maximum is inside the pin.
 SURFACE_MAXIMUM_SHARE = 0.999
-Segment = tuple[str, float, float]  # its name, and between which z
+Segment = tuple[str, float, float]  # name, start z, end z
 
 
 @dataclass(frozen=True)
 class PinView:
     """A 3D view of a pin.
 
-    opens: index of the case shown first. moving: whether any case has a motion.
-    factors: whether there is a yield strength. pressed, sections: whether any case has contact
-    pressure, or a section. along: the maxima along the pin.
+    opens: index of the case shown first.
+    moving: whether any case has a motion.
+    factors: whether there is a yield strength.
+    pressed, sections: whether any case has contact pressure, or a section.
+    along: the maxima along the pin.
     """
 
     pin: str
@@ -106,7 +108,7 @@ def _governing(pins: list[PinResult]) -> int:
 
 def _surface(surface: Surface) -> dict[str, Any]:
     largest = _largest(surface)
-    # In units of stress: a point's error is a part of the point's own stress, not of the pin's.
+    # Scaled to stress, so that rounding is relative to the stress of each point, not of the pin.
     stress, moved = surface.stress * largest, surface.displacement * largest
     peaks = np.abs(stress).max(axis=(1, 2), initial=0.0)
     longest = np.abs(moved).max(axis=(0, 1), initial=0.0)
@@ -126,7 +128,9 @@ def _surface(surface: Surface) -> dict[str, Any]:
 
 
 def _largest(surface: Surface) -> Floats:
-    """Return the largest amount of each unit load (K,) in all cases; 1 for one that never acts."""
+    """Return the largest amount of each unit load (K,) over all cases; 1 for a load that never
+    acts.
+    """
     every = np.concatenate([c.amounts for c in surface.cases])
     largest = np.abs(every).max(axis=(0, 2), initial=0.0)
     return np.where(largest > 0.0, largest, 1.0)
@@ -134,7 +138,7 @@ def _largest(surface: Surface) -> Floats:
 
 def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> dict[str, Any]:
     on_surface = float(case.largest[~case.excluded].max(initial=0.0))
-    # The solid model's maximum is a mean over directions of the loads.
+    # The maximum of the solid model is a mean over rotations of the loads.
     error = sum(pin.error_parts.values())
     most = float(case.maxima[case.instant]) if surface.revolved else (pin.max_von_mises or 0.0)
     least = SURFACE_MAXIMUM_SHARE * most - (0.0 if surface.revolved else error)
@@ -166,7 +170,7 @@ def _case(case: SurfaceCase, pin: PinResult, number: int, surface: Surface) -> d
 def _row(pin: PinResult, results: Results) -> dict[str, str]:
     """Return the error and factor of the surface's largest stress at the row's instant.
 
-    Where the stress in the section is larger, a sentence says so.
+    If section or core governs, a sentence states this instead of the factor.
     """
     places = pin.places
     if places is None or places.section is None or places.governs == "surface":
@@ -186,7 +190,7 @@ def _row(pin: PinResult, results: Results) -> dict[str, str]:
 
 
 def _short(maxima: Floats, instant: int) -> list[float]:
-    """Return maxima with seven digits, but the governing one with all."""
+    """Return the maxima with seven digits, the governing one with all digits."""
     rounded = [float(f"{value:.7g}") for value in maxima]
     rounded[instant] = float(maxima[instant])
     return rounded
@@ -232,16 +236,17 @@ def _pressure(case: SurfaceCase) -> dict[str, Any] | None:
 
 
 def _top(pressure: Floats) -> float:
-    """Return the pressure at which the colours end, Pa.
+    """Return the pressure at the end of the colour scale.
 
-    Beyond it are cells at the edges of lugs, whose pressure depends on their size.
+    Higher pressures are in cells at the edges of lugs, where pressure depends on the size of the
+    cells.
     """
     some = pressure[pressure > 0.0]
     return float(np.percentile(some, PRESSURE_PERCENTILE)) if len(some) else 0.0
 
 
 def _turn(box: Floats, location: tuple[float, ...] | None) -> list[list[float]]:
-    """Return the rows right, up and towards the viewer, whom the maximum faces."""
+    """Return three rows: right, up and towards the viewer, who faces the maximum."""
     view = View.of(box, np.asarray(location))
     towards = view.eye - view.centre
     towards /= np.linalg.norm(towards)
@@ -262,9 +267,8 @@ def _box(surface: Surface) -> Floats:
 def _along(
     results: Results, shape: PinShape, shown: list[tuple[SurfaceCase, int, Surface]]
 ) -> Grid:
-    """Return the largest stress on each segment's surface outside excluded zones, and its place.
-
-    It has every case at its governing instant.
+    """Return the largest stress on each segment's surface outside excluded zones, and its place,
+    for every case at its governing instant.
     """
     columns: list[Column[Segment]] = [
         read_only("segment", lambda row: row[0] or DASH, numeric=False),
@@ -290,7 +294,7 @@ def _along(
 def _most(
     case: SurfaceCase, z: Floats, low: float, high: float
 ) -> tuple[float | None, float | None]:
-    """Return the largest stress between two z, and its z."""
+    """Return the largest stress between two values of z, and its z."""
     little = 1e-6 * float(np.ptp(z))
     here = np.flatnonzero((z >= low - little) & (z <= high + little) & ~case.excluded)
     if not len(here):

@@ -1,6 +1,6 @@
 """report.pdf, typeset by typst (https://typst.app/docs), a wheel that needs no system libraries.
 
-It brings its own fonts, so that the PDF is the same everywhere, and is ten times faster than
+Typst has its own fonts, so that the PDF is the same everywhere, and is ten times faster than
 WeasyPrint, which needs Pango and the fonts of the system.
 """
 
@@ -22,9 +22,9 @@ from reports.plots.theme import on_paper
 
 Content = dict[str, Any]  # of reports.page.paper
 
-FIXED_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # the same results, the same bytes
+FIXED_DATE = datetime(2000, 1, 1, tzinfo=UTC)  # so that the same results give the same bytes
 FONT_NAME = "Libertinus Serif"  # comes with typst
-# Of plots, and of the views in them that are higher
+# Width of plots; views higher than the maximum are reduced.
 PLOT_WIDTH, MAX_PLOT_HEIGHT, REDUCED_PLOT_HEIGHT = 330, 120, 95
 FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 
@@ -32,8 +32,8 @@ FONT_FAMILY_PATTERN = re.compile(r'font-family="[^"]*"')
 def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
     """Return the PDF, tagged for accessibility (PDF/UA-1).
 
-    plots: by their names.
-    Raises: Damaged for content that is not all that the report needs.
+    plots: by their names. Characters without a glyph are replaced by their code points.
+    Raises: Damaged for content that cannot be typeset.
     """
     import typst
 
@@ -71,12 +71,14 @@ def typeset(content: Content, plots: Mapping[str, Plot]) -> bytes:
 def _compiled(files: dict[str, bytes], timestamp: datetime) -> bytes:
     """Return the compiled PDF.
 
-    Raises: TypstError, for instance for a character that no font has, which UA-1 forbids.
+    Raises: TypstError, for instance for a character that no font has, which UA-1 does not allow.
     """
     import typst
 
-    fonts = typst.Fonts(include_system_fonts=False)  # those of a machine would change the bytes
-    with TemporaryDirectory(prefix="pinstress-") as nothing:  # else it reads the current folder
+    fonts = typst.Fonts(include_system_fonts=False)  # system fonts would change the bytes
+    with TemporaryDirectory(
+        prefix="pinstress-"
+    ) as nothing:  # otherwise it reads the current folder
         compiler = typst.Compiler(files, root=nothing, font_paths=fonts)  # type: ignore[type-var]
         pdf = compiler.compile(format="pdf", pdf_standards="ua-1", timestamp=timestamp)
     assert isinstance(pdf, bytes)
@@ -84,7 +86,7 @@ def _compiled(files: dict[str, bytes], timestamp: datetime) -> bytes:
 
 
 def _without_glyph(text: str) -> list[str]:
-    """Return the characters of a text that cannot be typeset; each is tried separately."""
+    """Return the characters of a text that have no glyph; each is typeset separately to test it."""
     return [c for c in sorted(set(text)) if not c.isascii() and not _has_glyph(c)]
 
 
@@ -101,13 +103,13 @@ def _has_glyph(character: str) -> bool:
 
 
 def shown_plots(content: Content) -> list[str]:
-    """Return the names of the plots that the PDF shows, if any."""
+    """Return the names of the plots that the PDF shows, if they exist."""
     cases = [case["plot"] for pin in content["pins"] for case in pin["cases"]]
     return [*(pin["refinement"] for pin in content["pins"]), *cases]
 
 
 def _drawn(spec: Spec) -> str:
-    """Return a plot for half the width of a page; its caption is the title."""
+    """Return a plot half as wide as a page; its caption serves as the title."""
     config = on_paper(FONT_NAME)
     config["view"] |= {"continuousWidth": PLOT_WIDTH}
     small = _flatter({key: value for key, value in spec.items() if key != "title"})

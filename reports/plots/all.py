@@ -84,7 +84,7 @@ def _pins(results: Results) -> Iterator[Plot]:
 
 
 def _fatigue(results: Results) -> Iterator[Plot]:
-    """Yield the plots of each pin's worst point."""
+    """Yield the plots of the worst point of each pin."""
     if results.fatigue is None:
         return
     histories = {(h.pin, h.point): h for h in results.histories}
@@ -94,9 +94,8 @@ def _fatigue(results: Results) -> Iterator[Plot]:
 
 
 def governing(results: Results, table: ReactionTable) -> dict[str, float]:
-    """Return the place of each pin's maximum stress on the abscissa of a motion.
-
-    The abscissa is that of plots.loads.reactions.along.
+    """Return the abscissa at which each pin's stress is largest: drive position, or time without
+    one.
     """
     rows = (p for p in results.pins if p.case == table.case)
     at = {p.pin: p.time if table.position is None else p.position for p in rows}
@@ -104,6 +103,8 @@ def governing(results: Results, table: ReactionTable) -> dict[str, float]:
 
 
 def _refined(pin: PinResult) -> bool:
-    """Return whether there are meshes to compare; a logarithmic axis cannot show zero."""
+    """Return whether a row has several meshes to compare, without zeros, which a logarithmic axis
+    cannot show.
+    """
     steps = pin.history
     return len(steps) > 1 and all(s.max_von_mises > 0.0 and s.dofs > 0 for s in steps)

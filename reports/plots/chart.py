@@ -10,8 +10,8 @@ from reports.format.numbers import percent
 from reports.plots.spec import Plot, Spec, clipped, headed, level, rows
 from reports.text.chart_summary import curve_name, failures, reference_line
 
-SUBTITLE_LINE_LENGTH = 110  # letters of a line under the title
-AXIS_ROOM_FACTOR = 2.5  # factor beyond the outermost points
+SUBTITLE_LINE_LENGTH = 110  # characters
+AXIS_ROOM_FACTOR = 2.5  # by which the axis extends beyond the outermost points
 X_AXIS_HEADINGS = {
     "seconds": "time, meshing included [s]",
     "memory": "peak memory above bare process [MB]",
@@ -20,7 +20,7 @@ X_AXIS_HEADINGS = {
 
 def chart_plot(chart: Chart) -> Plot:
     """Return two logarithmic panels with a common axis of errors."""
-    floor = max(chart.reference.error, 1e-9)  # of the reference, positive
+    floor = max(chart.reference.error, 1e-9)  # error of the reference, positive
     data = [
         _row(curve_name(model, element), point, floor)
         for (model, element), curve in chart.curves.items()

@@ -7,11 +7,11 @@ from reports.plots.spec import Plot, Spec, labels, rows
 from reports.tables.comparison import changed_rows
 
 COMPARISON_PLOT_NAME = "comparison"
-MAX_PLOT_ROWS = 40  # the caption says how many there are
+MAX_PLOT_ROWS = 40  # with more rows, the caption gives their number
 
 
 def comparison_plot(comparison: RunComparison) -> Plot | None:
-    """Return points with ranges on a logarithmic axis; None without two numbers to compare."""
+    """Return points with their ranges on a logarithmic axis; None without a changed maximum."""
     data: list[Spec] = []
     changed = changed_rows(comparison)
     pairs = changed[:MAX_PLOT_ROWS]

@@ -1,4 +1,4 @@
-"""The factor of safety of pins against one number of the study."""
+"""The safety factors of pins against one number of the study."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from reports.plots.spec import (
     rows,
 )
 
-MIN_FACTOR_SHARE = 1e-3  # of a factor: the lower end of an error bar on the logarithmic axis
+MIN_FACTOR_SHARE = 1e-3  # least end of an error bar over the factor, for the logarithmic axis
 
 
 def curve_plot(curve: FactorCurve) -> Plot:
-    """Return a line for each pin, by the case with its smallest factor, with the error as bars."""
+    """Return a line for each pin through its smallest factors, with the errors as bars."""
     names = {pin: f"pin {label}" for pin, label in labels(curve.pins).items()}
     data = [_row(point, names[pin]) for pin in curve.pins for point in curve.least(pin)]
     unit = f" [{curve.unit}]" if curve.unit else ""
@@ -52,7 +52,7 @@ def curve_plot(curve: FactorCurve) -> Plot:
 
 
 def _row(point: CurvePoint, name: str) -> Spec:
-    """Return a point; one without a factor breaks the line."""
+    """Return a point of a line; a point without a factor breaks the line."""
     ends, factor = point.factor_ends, point.safety_factor
     row: Spec = {"x": point.value, "factor": factor, "pin": name,
                  "case": point.case, "outcome": point.outcome}  # fmt: skip

@@ -27,7 +27,7 @@ def draw(plots: Iterable[Plot], directory: Path) -> list[Path]:
 def draw_plot(plot: Plot, directory: Path) -> list[Path]:
     """Write one plot as SVG and as PNG; return the files.
 
-    Raises: ValueError where Vega-Lite fails, Damaged for an address in it.
+    Raises: ValueError where Vega-Lite fails, Damaged for an address in the plot.
     """
     import vl_convert
 
@@ -41,9 +41,10 @@ def draw_plot(plot: Plot, directory: Path) -> list[Path]:
 def svg(spec: Spec) -> str:
     """Return the drawing of a specification with its configuration; no address is opened.
 
-    Vega cuts long texts within characters that are two UTF-16 units, such as emoji, and fails:
-    these are then written as U+1F600.
-    Raises: ValueError where Vega-Lite fails, Damaged for an address in it.
+    Vega cuts long texts within characters that take two UTF-16 units, such as emoji, and fails;
+    these characters are then written as U+1F600.
+
+    Raises: ValueError where Vega-Lite fails, Damaged for an address in the specification.
     """
     require_no_address(spec, "the plot")
     text = json.dumps(still(spec), ensure_ascii=False)
@@ -65,7 +66,7 @@ def _drawn(text: str) -> str:
 
 
 def _numbered(svg: str) -> str:
-    """Return the SVG with clips numbered from one, since Vega counts on from plot to plot."""
+    """Return the SVG with clips numbered from one; Vega continues the numbers from plot to plot."""
     number = {
         name: str(k) for k, name in enumerate(dict.fromkeys(CLIP_ID_PATTERN.findall(svg)), start=1)
     }

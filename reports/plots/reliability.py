@@ -1,4 +1,4 @@
-"""The distribution of a factor of safety on a normal-probability axis."""
+"""The distribution of a safety factor on a normal-probability axis."""
 
 from __future__ import annotations
 
@@ -15,9 +15,8 @@ SAMPLING_NAMES = "plain sampling", "importance sampling"
 
 
 def distribution_plot(reliability: Reliability, risk: Risk) -> Plot | None:
-    """Return the probability that the factor is lower, on an axis where a normal law is straight.
-
-    None without samples.
+    """Return the probability of a lower factor, on an axis on which a normal distribution is a
+    straight line; None without samples.
     """
     deviate = NormalDist().inv_cdf
     data: list[Spec] = [

@@ -1,4 +1,4 @@
-"""Checks that plots and drawings are self-contained, so that they open no address and no file."""
+"""Checks that plots and drawings are self-contained: they open no address and no file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from xml.parsers import expat
 
 from pinbase.errors import Damaged
 
-ADDRESS_KEYS = {"url", "href"}  # keys of Vega-Lite: of data, of pictures, of links
+ADDRESS_KEYS = {"url", "href"}  # keys of Vega-Lite for data, pictures and links
 IMAGE_MARK = "image"
 EXTERNAL_REFERENCE_PATTERN = re.compile(
     r"url\(\s*['\"]?\s*(?!#)[^\s'\"]|@import|image-set\(|src\(", re.IGNORECASE
@@ -19,7 +19,7 @@ FORBIDDEN_ELEMENTS = {"image", "feimage", "script", "foreignobject", "iframe", "
 def require_no_address(spec: Any, name: str) -> None:
     """Check that a specification of Vega-Lite has no address and no picture.
 
-    Raises: Damaged.
+    Raises: Damaged if it has.
     """
     waiting = [spec]
     while waiting:
@@ -40,7 +40,7 @@ def require_no_address(spec: Any, name: str) -> None:
 def require_self_contained(svg: str, name: str) -> None:
     """Check that a text is an SVG that refers only to its own parts.
 
-    Raises: Damaged.
+    Raises: Damaged if it is not.
     """
     inside: list[str] = []
 
@@ -50,7 +50,7 @@ def require_self_contained(svg: str, name: str) -> None:
             raise Damaged(f"{name} has an element {element}, which no drawing of pinstress has")
         for key, value in attributes.items():
             link = key.rpartition(":")[2].lower() in ("href", "src")
-            styled = not key.lower().startswith("aria-")  # which are words
+            styled = not key.lower().startswith("aria-")  # aria attributes are words
             if (link and not value.startswith("#")) or (
                 styled and EXTERNAL_REFERENCE_PATTERN.search(value)
             ):

@@ -1,7 +1,6 @@
 """Specifications of plots in Vega-Lite, as plain dicts with their data.
 
-The same specification is drawn by the report in the browser and into files by
-reports.plots.draw.
+The report draws them in the browser; reports.plots.draw draws the same specifications into files.
 """
 
 from __future__ import annotations
@@ -20,11 +19,11 @@ from pinbase.dimensions import Floats
 from reports.plots.theme import dashes
 
 Spec = dict[str, Any]
-CURVE_TOLERANCE = 1e-6  # of the largest value: curves nearer than this are one
-MAX_CURVE_POINTS = 2_001  # beyond which only points are drawn that the curves need
-POINTER_POINTS = 500  # of a curve at which the pointer finds values, at least
+CURVE_TOLERANCE = 1e-6  # of the largest value; curves nearer than this coincide
+MAX_CURVE_POINTS = 2_001  # of more points, only those that the curves need are drawn
+POINTER_POINTS = 500  # least number of points of a curve at which the pointer finds values
 CURVE_POINT_TOLERANCE = 5e-4  # of a panel's extent: a twelfth of a pixel
-FEW_VALUES = 32  # values of a curve by which it is compared first
+FEW_VALUES = 32  # values by which curves are compared first
 NUMBER_FORMAT = ",.5~r"
 ZOOM_PARAMETER: Spec = {
     "name": "zoom",
@@ -57,10 +56,11 @@ class Abscissa:
 
 @dataclass(frozen=True)
 class Panel:
-    """Curves (N,) by name above a common abscissa, NaN where values are missing.
+    """Curves (N,) by name over a common abscissa, NaN where values are missing.
 
-    under, over: layers behind and in front of them. scale: of the ordinate.
-    zero: whether a line is drawn at zero.
+    under, over: layers behind and in front of the curves.
+    scale: of the ordinate.
+    zero: whether to draw a line at zero.
     """
 
     heading: str
@@ -73,9 +73,10 @@ class Panel:
 
 
 def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = False) -> Spec:
-    """Return panels with curves over one abscissa, which zoom together, with values at the pointer.
+    """Return panels with curves over one abscissa, which zoom together and show values at the
+    pointer.
 
-    common: whether the panels' curves have the same names, and one key.
+    common: whether the curves of all panels have the same names, and share a key.
     """
     together = [panels] if common else [[panel] for panel in panels]
     merged = [shown for part in together for shown in _merged([p.curves for p in part])]
@@ -98,12 +99,12 @@ def curves(title: str, x: Abscissa, panels: Sequence[Panel], common: bool = Fals
 
 
 def headed(title: str, *notes: str) -> Spec:
-    """Return the title of a plot that stands alone, with lines under it."""
+    """Return the title of a plot, with notes as lines under it."""
     return {"text": title, "subtitle": list(notes), "fontSize": 13, "fontWeight": 600, "offset": 12}
 
 
 def table(columns: dict[str, Floats]) -> Spec:
-    """Return data (N,) by column as CSV, which is the shortest form that Vega-Lite reads."""
+    """Return columns (N,) as CSV data, the shortest form that Vega-Lite reads."""
     rows = zip(*(_written(values) for values in columns.values()), strict=True)
     text = "\n".join([",".join(columns), *map(",".join, rows)])
     return {"values": text, "format": {"type": "csv", "parse": dict.fromkeys(columns, "number")}}
@@ -114,10 +115,7 @@ def _written(values: Floats) -> list[str]:
 
 
 def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
-    """Return the view of a panel.
-
-    names: of the curves by column.
-    """
+    """Return the view of a panel. names: of the curves, by column."""
     scale = {"nice": False, "zero": False}
     across: Spec = {"field": "x", "type": "quantitative", "title": x.heading if last else None,
               "scale": {"type": "log", **scale} if x.logarithmic else scale}  # fmt: skip
@@ -135,7 +133,7 @@ def _view(panel: Panel, names: dict[str, str], x: Abscissa, last: bool) -> Spec:
 
 
 def _line(column: str, names: dict[str, str], scale: Spec) -> Spec:
-    """Return one curve; those with names have a key."""
+    """Return one curve; curves with names have a key."""
     domain = {"domain": list(names.values())}
     colour: Spec = {"datum": names[column], "scale": domain}
     more: Spec = {"strokeDash": {**colour, "scale": {**domain, "range": dashes(len(names))}}}
@@ -171,9 +169,9 @@ def _pointed(panel: Panel, names: dict[str, str]) -> Spec:
 
 
 def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
-    """Return the panels' curves, with those that coincide in all panels under one name.
+    """Return the panels' curves; those that coincide in all panels share one name.
 
-    Curves without any value are left out as long as others have some.
+    Curves without any value are left out, unless no curve has any.
     """
     names = list(panels[0])
     close = [_tolerance(panel) for panel in panels]
@@ -202,9 +200,10 @@ def _merged(panels: Sequence[dict[str, Floats]]) -> list[dict[str, Floats]]:
 
 
 def _needed(x: Abscissa, panels: Sequence[Panel], merged: list[dict[str, Floats]]) -> Mask:
-    """Return which of the points (N,) are drawn: of many those between which curves are straight,
-    and some for the pointer.
+    """Return which of the points (N,) are drawn.
 
+    Of more than MAX_CURVE_POINTS, only the points between which the curves are straight are drawn,
+    and some for the pointer.
     merged: the curves of the panels.
     """
     if len(x.values) <= MAX_CURVE_POINTS:
@@ -213,7 +212,7 @@ def _needed(x: Abscissa, panels: Sequence[Panel], merged: list[dict[str, Floats]
     for panel, shown in zip(panels, merged, strict=True):
         axes.append((np.column_stack([*shown.values()]), panel.scale.get("type") == "log"))
     parts = [np.log10(values) if logarithmic else values for values, logarithmic in axes]
-    # Where values are missing a curve ends; the last point before, and the first after, stay.
+    # A curve ends where values are missing; the last point before and the first after it are kept.
     finite = np.column_stack([np.isfinite(part) for part in parts])
     ends = np.any(finite[1:] != finite[:-1], axis=1)
     fixed = np.append(ends, False) | np.append(False, ends)
@@ -225,24 +224,24 @@ def _needed(x: Abscissa, panels: Sequence[Panel], merged: list[dict[str, Floats]
 
 
 def _height(values: Floats) -> float:
-    """Return the extent of a panel's curves."""
+    """Return the extent of a panel's curves; 1 if it is zero."""
     known = values[np.isfinite(values)]
     return float(np.ptp(known)) if len(known) and np.ptp(known) > 0.0 else 1.0
 
 
 def _tolerance(panel: dict[str, Floats]) -> float:
-    """Return the difference at which curves of a panel coincide."""
+    """Return the difference up to which curves of a panel coincide."""
     known = (np.abs(v[np.isfinite(v)]).max(initial=0.0) for v in panel.values())
     return CURVE_TOLERANCE * float(max(known))
 
 
 def _few(values: Floats) -> Floats:
-    """Return a few values of a curve, in which most curves differ already."""
+    """Return a few values of a curve; most curves differ in these already."""
     return values[:: max(1, len(values) // FEW_VALUES)]
 
 
 def _coincide(some: Floats, other: Floats, tolerance: float) -> NDArray[np.bool_]:
-    """Return whether curves (..., N) coincide with another one (N,)."""
+    """Return whether curves (..., N) coincide with another curve (N,)."""
     close = np.isclose(some, other, rtol=0.0, atol=tolerance, equal_nan=True)
     return np.asarray(close.all(axis=-1))
 
@@ -253,7 +252,7 @@ def clipped(name: str, most: int = 24) -> str:
 
 
 def labels(names: Iterable[str], most: int = 24) -> dict[str, str]:
-    """Return the label of each name, short enough unless two of them would be the same."""
+    """Return the label of each name, shortened unless two labels would then be the same."""
     texts = {name: clipped(name, most) for name in names}
     counts = Counter(texts.values())
     return {name: text if counts[text] == 1 else name for name, text in texts.items()}
@@ -271,11 +270,11 @@ def still(spec: Spec) -> Spec:
     return {**spec, **parts}
 
 
-# Layers with data of their own.
+# The functions below make layers with data of their own.
 
 
 def rows(values: Sequence[Spec]) -> Spec:
-    """Return data given row by row."""
+    """Return data for Vega-Lite given row by row."""
     return {"values": [{k: _rounded(v) for k, v in row.items()} for row in values]}
 
 
@@ -313,7 +312,7 @@ def instant(x: float, text: str = "", left: bool = False) -> Spec:
 
 
 def bands(extents: Sequence[tuple[float, float]], style: str = "shade") -> Spec:
-    """Return shaded extents of the abscissa."""
+    """Return shaded intervals of the abscissa."""
     return {
         "data": rows([{"x": low, "x2": high} for low, high in extents]),
         "mark": {"type": "rect", "style": style, "clip": True},
@@ -322,7 +321,7 @@ def bands(extents: Sequence[tuple[float, float]], style: str = "shade") -> Spec:
 
 
 def points(values: Sequence[Spec], style: str = "hot", shape: str = "circle") -> Spec:
-    """Return marks at rows with x, y and optionally a text, which is shown under the pointer."""
+    """Return marks at rows with x, y and optionally a text, which the pointer shows."""
     mark = {"type": "point", "style": style, "shape": shape, "size": 36, "filled": True,
             "opacity": 1, "clip": True}  # fmt: skip
     if style == "published":

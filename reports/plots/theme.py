@@ -1,11 +1,11 @@
-"""Theme of the plots: colours, dashes, and the configuration of Vega-Lite that all share."""
+"""Theme of the plots: colours, dashes, and the configuration of Vega-Lite that all plots share."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-# Ink on paper and light on dark; the first seven curves differ in grey too, by their dashes.
+# Colours on light and on dark ground. The dashes of the seven curves differ, also without colour.
 THEME_COLOURS: dict[str, tuple[str, str]] = {
     "ink": ("#1d1f23", "#e4e6ea"),
     "quiet": ("#5a6068", "#a2a9b3"),
@@ -27,7 +27,7 @@ SERIES_DASHES = ([1, 0], [7, 3], [2, 2], [7, 3, 2, 3], [4, 2], [7, 2, 2, 2, 2, 2
 
 
 def dashes(number: int) -> list[list[int]]:
-    """Return the dashes of a number of curves; the first 49 differ in colour or dashes."""
+    """Return the dashes of `number` curves; the first 49 differ in colour or dashes."""
     return [
         SERIES_DASHES[(k + k // len(SERIES_COLOURS)) % len(SERIES_DASHES)] for k in range(number)
     ]
@@ -42,7 +42,7 @@ def style_sheet() -> str:
 
 
 def on_paper(font: str = "DejaVu Sans, sans-serif") -> dict[str, Any]:
-    """Return the configuration of plots that stand alone."""
+    """Return the configuration of plots in files."""
     colours = {name: light for name, (light, _) in THEME_COLOURS.items()}
     return {**_config(colours, font), "background": colours["paper"]}
 
@@ -58,7 +58,7 @@ def _config(c: Mapping[str, str], font: str) -> dict[str, Any]:
     return {
         "font": font,
         "aria": False,
-        "mark": {"aria": False},  # each would need a label of its own
+        "mark": {"aria": False},  # otherwise each mark would need a label
         "padding": 4,
         "axis": {**text, "gridColor": c["rule"], "domainColor": c["quiet"], "tickColor": c["quiet"],
                  "labelFontSize": 11, "titleFontSize": 11, "labelLimit": 260},

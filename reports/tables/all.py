@@ -34,12 +34,12 @@ from reports.tables.stress.joint import joint_tables
 from reports.tables.stress.places import place_tables
 from reports.tables.stress.singular_zones import zones_table
 
-# Long tables of the motion, seldom read in a spreadsheet, are left out of the workbook.
+# Long tables, seldom read in a spreadsheet, are left out of the workbook.
 CSV_ONLY_TABLES = (
     "line_loads", "stress_history", "second_opinion_loads", "reactions_pin_axes", "motion",
     "joints", "transmission", "linkage", "sliders",
 )  # fmt: skip
-# Rows of a sheet; longer tables are written as CSV only, which is much faster
+# Rows of a sheet; longer tables are written as CSV only, which is much faster.
 MAX_SHEET_ROWS = 2000
 
 
@@ -49,9 +49,9 @@ def sheets(tables: Sequence[Table[Any]]) -> list[Table[Any]]:
 
 
 def stress_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
-    """Return the tables that need stresses; safety factors come first.
+    """Return the tables that need stresses; that of the safety factors comes first.
 
-    empty: whether tables without rows are among them.
+    empty: whether to include tables without rows.
     """
     check = results.beam_check
     rest: list[Table[Any]] = [
@@ -73,7 +73,7 @@ def stress_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
 def load_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
     """Return the tables of the loads.
 
-    empty: whether tables without rows are among them.
+    empty: whether to include tables without rows.
     """
     tables: list[Table[Any]] = [published_reactions_table(results), published_values_table(results)]
     tables += [reactions_table(results), reactions_pin_axes_table(results), drive_table(results)]
@@ -86,6 +86,6 @@ def load_tables(results: Results, *, empty: bool = False) -> list[Table[Any]]:
     tables.append(wheel_table(results))
     if not (empty or results.motion):
         tables.append(transmission_table(results))
-    # All tables of a linkage, so that every run has the same files.
+    # A linkage has all of its tables, even empty ones, so that every run has the same files.
     full = [table for table in tables if empty or len(table)]
     return full + (linkage_tables(results) if empty or results.motion else [])

@@ -8,7 +8,7 @@ from reports.tables.column import Column, Table, fields
 
 
 def chart_table(chart: Chart) -> Table[ChartPoint]:
-    """Return a row per mesh; failed ones have a reason instead of numbers."""
+    """Return the table with a row for each mesh; a failed mesh has a reason instead of numbers."""
 
     def within(p: ChartPoint) -> bool | None:
         return None if p.error is None else p.error <= chart.tolerance

@@ -23,8 +23,8 @@ from reports.format.files.parquet import Cells, write_parquet
 from reports.format.numbers import DASH, engineering, short
 from reports.format.units import unit_name
 
-MAX_CSV_ROWS = 1_000_000  # rows; a sheet of a spreadsheet has 1,048,576
-LINES_AT_ONCE = 4096  # lines of an array that are Python's numbers at a time
+MAX_CSV_ROWS = 1_000_000  # a sheet of a spreadsheet has 1,048,576 rows
+LINES_AT_ONCE = 4096  # lines of an array converted to Python's numbers at a time
 
 R = TypeVar("R")
 T = TypeVar("T")
@@ -34,14 +34,16 @@ T = TypeVar("T")
 class Column(Generic[R]):
     """One column for every writer.
 
-    key: its name in files; empty: for people only.
-    cell: the number in the results' units with every digit, text, truth or None of a row.
+    key: its name in files; empty for a column that only people see.
+    cell: returns the value of a row: a number in the results' units with every digit, text, truth
+    or None.
     dimension: of reports.format.units, or a function of the row where it differs from row to row.
-    heading: for people, the unit is added; empty: in files only.
-    text: for people, where more than the number is shown.
-    numeric: whether people read it flush right.
-    rank: the highest goes first on a narrow terminal, 0 never.
-    drop_if_empty: whether people do not see it where no row has a value.
+    heading: for people, without the unit; empty for a column that is only in files.
+    text: returns the text for people, where it is more than the number.
+    numeric: whether the column is flush right for people.
+    rank: on a narrow terminal the columns of the highest rank are left out first, those of rank 0
+    never.
+    drop_if_empty: whether the column is hidden from people if no row has a value.
     in_json: whether it is also a key of the row in results.json.
     """
 
@@ -60,13 +62,13 @@ class Column(Generic[R]):
         return "" if callable(self.dimension) else unit_name(self.dimension, units)
 
     def headed(self, units: Units | None) -> str:
-        """Return the heading for people, with the unit where that is known."""
+        """Return the heading for people, with the unit if `units` is given."""
         unit = self.unit(units).replace(" ", "·") if units else ""
         heading = f"{self.heading} [{unit}]" if unit else self.heading
         return heading.replace("\n ", "\n").strip()
 
     def shown(self, row: R) -> str:
-        """Return the text for people: four digits, a time as it was given, a dash for no value."""
+        """Return the text for people: four digits, a time in full, a dash for no value."""
         if self.text is not None:
             return self.text(row)
         value = self.cell(row)
@@ -82,9 +84,9 @@ class Column(Generic[R]):
 def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
     """Return columns of files, all of one dimension, that are attributes of the row.
 
-    names: "attribute" or "key=attribute", separated by blanks; the attribute may be dotted, and its
-    last part is the key. A part that is a number is a place in a tuple or an array. Behind a part
-    with a question mark, the cell is None where that part is None or an empty tuple.
+    names: "attribute" or "key=attribute", separated by blanks. The attribute may be dotted; its
+    last part is then the key. A part that is a number is an index into a tuple or an array. The
+    cell is None where a part followed by a question mark is None or an empty tuple.
     """
     pairs = (name.rpartition("=") for name in names.split())
     return [
@@ -94,7 +96,7 @@ def fields(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
 
 
 def _reader(path: str) -> Callable[[Any], Any]:
-    """Return the function that reads a path (`fields`) of a row."""
+    """Return the function that reads the value at a path (`fields`) from a row."""
     parts = path.split(".")
     if all(part.isidentifier() for part in parts):
         return attrgetter(path)
@@ -111,22 +113,21 @@ def _reader(path: str) -> Callable[[Any], Any]:
 
 
 def texts(names: str, **same: Any) -> list[Column[Any]]:
-    """Return columns of attributes that are texts, which people read under the key."""
+    """Return columns of attributes that are texts, with the key as the heading for people."""
     columns = fields(names, numeric=False, **same)
     return [replace(column, heading=column.key) for column in columns]
 
 
 def unit_columns(names: str) -> list[Column[Any]]:
-    """Return columns of files for the units, named as in "stress time", of rows with `units`."""
+    """Return columns of files for the units of rows with `units`. names: "stress time", for
+    instance.
+    """
     return [Column(f"{name}_unit", attrgetter(f"units.{name}")) for name in names.split()]
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A table as text cells.
-
-    numeric: which columns are flush right.
-    """
+    """A table as text cells. numeric: whether each column is flush right."""
 
     head: list[str]
     body: list[list[str]]
@@ -139,9 +140,9 @@ class Grid:
 
 @dataclass(frozen=True)
 class Table(Generic[R]):
-    """Rows with the columns that are written of them.
+    """Rows, and the columns that are written for them.
 
-    name: of its CSV file, without the ending.
+    name: of its CSV file, without the extension.
     """
 
     name: str
@@ -153,7 +154,7 @@ class Table(Generic[R]):
 
     @property
     def filed(self) -> list[Column[R]]:
-        """The columns that files have."""
+        """The columns that are written to files."""
         return [column for column in self.columns if column.key]
 
     @property
@@ -171,7 +172,9 @@ class Table(Generic[R]):
         return ([cell(row) for cell in cells] for row in self.rows)
 
     def write(self, directory: Path) -> Path:
-        """Write the table as CSV, or as Parquet if too long for spreadsheets; return the path."""
+        """Write the table as CSV, or as Parquet if it is too long for spreadsheets; return the
+        path.
+        """
         large = len(self) > MAX_CSV_ROWS
         path = directory / f"{self.name}.{'parquet' if large else 'csv'}"
         if large:
@@ -181,7 +184,7 @@ class Table(Generic[R]):
         return path
 
     def groups(self, size: int) -> Iterator[Sequence[Cells]]:
-        """Yield the cells of every column of `size` lines after another."""
+        """Yield the cells of every column, `size` lines at a time."""
         lines = self.cells()
         while group := list(islice(lines, size)):
             yield list(zip(*group, strict=True))
@@ -196,9 +199,8 @@ class Table(Generic[R]):
         return [(c, texts) for c, texts in shown if not c.drop_if_empty or {*texts} - {DASH}]
 
     def grid(self, units: Units | None = None) -> Grid:
-        """Return the table as people read it.
-
-        units: None where the headings have them.
+        """Return the table as people read it. units: None where the headings have the units
+        already.
         """
         shown = self.for_people()
         body = [list(row) for row in zip(*(texts for _, texts in shown), strict=True)]
@@ -206,10 +208,10 @@ class Table(Generic[R]):
 
 
 class ArrayTable(Table[R]):
-    """A table of millions of lines, in which each row stands for many lines.
+    """A table of up to millions of lines, in which each row stands for many lines.
 
-    A cell of a row is an array, a list, or one value for all its lines. The first column with an
-    array gives their number.
+    A cell of a row is an array, a list, or one value for all lines of the row. The first column
+    with an array or a list determines the number of lines.
     """
 
     def __len__(self) -> int:
@@ -249,12 +251,12 @@ class ArrayTable(Table[R]):
 
 
 def _part(cells: Floats | list[Cell] | Cell, first: int, last: int) -> Cells:
-    """Return some of the cells, of an array without a copy."""
+    """Return the cells of lines `first` to `last`; those of an array are not copied."""
     return cells[first:last] if isinstance(cells, np.ndarray) else _listed(cells, first, last)
 
 
 def _joined(parts: list[list[Cells]]) -> Sequence[Cells]:
-    """Return the cells of every column from those of successive lines."""
+    """Return the cells of every column, joined from parts of successive lines."""
     if len(parts) == 1:
         return parts[0]
     return [
@@ -263,7 +265,9 @@ def _joined(parts: list[list[Cells]]) -> Sequence[Cells]:
 
 
 def _listed(cells: Floats | list[Cell] | Cell, first: int, last: int) -> list[Cell]:
-    """Return some of the cells; one value for all is repeated as often as needed."""
+    """Return the cells of lines `first` to `last` as a list; one value for all lines is
+    repeated.
+    """
     if isinstance(cells, np.ndarray):
         some: list[Cell] = cells[first:last].tolist()
         return some
@@ -277,7 +281,7 @@ def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class PinRow(Generic[T]):
-    """A row on a part of the result of a pin in a case, with the units of the results."""
+    """A part of the result of a pin in a case (`of`), with the units of the results."""
 
     pin: PinResult
     units: Units
@@ -290,7 +294,7 @@ PIN_AND_CASE = fields("pin=pin.pin case=pin.case")  # of a PinRow
 def read_only(
     heading: str, cell: Callable[[R], Any], dimension: str = "", **more: Any
 ) -> Column[R]:
-    """Return a column that people read and no file has."""
+    """Return a column that people see and that is in no file."""
     return Column("", cell, dimension, heading, **more)
 
 

@@ -60,7 +60,7 @@ def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
 
 
 def _from_to(first: str, second: str) -> str:
-    """Return the former and the present value as text; one where they are equal."""
+    """Return the values of both runs as text; only one where they are equal."""
     return first if first == second else f"{first} → {second}"
 
 

@@ -1,4 +1,4 @@
-"""curve.csv: every pin and case at every value; and the worst cases, as people read them."""
+"""curve.csv with every pin and case at every value, and the table of the worst cases for people."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ from reports.tables.stress.places import places_json
 RESULTS_SCHEMA = "pinstress-results/2"
 
 
-# The keys of what no table has.
+# Keys of values that are in no table.
 PIN = fields(
     "max_von_mises_interval error_parts why location safety_factor_interval dofs seconds history "
     "held left_out"
@@ -122,7 +122,9 @@ def _drop(d: DropRecord) -> dict[str, Any]:
 
 
 def _pin(of: FactorRow, table: Table[FactorRow]) -> dict[str, Any]:
-    """Return a pin in a case: JSON columns of the safety factors, and values without a table."""
+    """Return a pin in a case: the JSON columns of the safety factors, and values that are in no
+    table.
+    """
     pin, depends = of.pin, "depends_on" if of.pin.outcome == DEPENDS else "safe_within"
     return {
         **json_of([column for column in table.columns if column.in_json], of),

@@ -1,4 +1,4 @@
-"""Reactions and single numbers compared with the publication's."""
+"""Reactions and single numbers compared with those of the publication."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def published_values_table(results: Results) -> Table[PublishedValue]:
 
 
 def write_published(results: Results, directory: Path) -> None:
-    """Write reactions_published.md and published.md, where there are published values."""
+    """Write reactions_published.md and published.md, if there are published values."""
     reactions, values = published_reactions_table(results), published_values_table(results)
     for name, title, table in (
         ("reactions_published", "Reactions compared with published values", reactions),

@@ -17,7 +17,7 @@ from reports.tables.column import Column, Table, fields, read_only, texts
 
 RELIABILITY_SCHEMA = "pinstress-reliability/1"
 PROBABILITY_DIGITS = 3
-OR_BENEATH_CONTACT = "or beneath contact"  # probability that a row fails, or depends on that
+OR_BENEATH_CONTACT = "or beneath contact"  # probability that a row fails or depends on this
 OR_OVER_OPEN = "or over what is open"
 
 R = TypeVar("R")
@@ -25,7 +25,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class RiskRow:
-    """The probability of failure of a pin in a case, with all results of the study."""
+    """The probability of failure of a pin in a case, with all results of the study (`whole`)."""
 
     risk: Risk
     whole: Reliability
@@ -45,7 +45,7 @@ class DriverRow:
 
 
 def _ends(key: str, spread: Callable[[R], Spread | None]) -> list[Column[R]]:
-    """Return the columns of a value and of the ends of its interval."""
+    """Return the columns of a value and the ends of its interval."""
 
     def end(name: str) -> Callable[[R], float | None]:
         return lambda row: finite(getattr(spread(row), name, None))
@@ -132,7 +132,7 @@ def remark(risk: Risk) -> str:
 
 
 def without_result(designs: int) -> str:
-    """Return that a number of designs have no result."""
+    """Return the clause that a number of designs have no result."""
     return f"{counted(designs, 'design')} {'has' if designs == 1 else 'have'} no result"
 
 
@@ -142,7 +142,7 @@ def chance(value: float | None) -> str:
 
 
 def chance_range(value: Spread | None) -> str:
-    """Return a probability with its interval; only the upper end where nothing failed."""
+    """Return a probability with its interval; only the upper end if nothing failed."""
     if value is None:
         return DASH
     if value.value <= 0.0:
@@ -162,9 +162,9 @@ def factor_interval(value: Spread | None) -> str:
 
 
 def risks_table(reliability: Reliability) -> Table[Risk]:
-    """Return a row per pin and case, for people.
+    """Return the table for people with a row for each pin and case.
 
-    The stress beneath contact and what is open have columns only where they raise a probability.
+    The stress beneath contact and open values have columns only if they raise a probability.
     """
     per_cent, p = f"{100.0 * reliability.confidence:g} %", chance(reliability.probability)
     limit = engineering(reliability.limit, PROBABILITY_DIGITS)
@@ -225,7 +225,9 @@ def _by_errors(probabilities: ByErrors | None) -> str:
 
 
 def error_range(probabilities: ByErrors) -> str:
-    """Return the probabilities by an error; only the upper end where nothing fails in either."""
+    """Return the probabilities at both ends of an error; only an upper bound if nothing fails at
+    either.
+    """
     if probabilities.higher.value <= 0.0:
         return chance_range(probabilities.higher)
     return f"{chance(probabilities.lower.value)} to {chance(probabilities.higher.value)}"
@@ -240,7 +242,9 @@ def change(probabilities: ByErrors) -> str:
 
 
 def drivers_table(reliability: Reliability) -> Table[DriverRow]:
-    """Return the parameters that matter to each row, the most important first, for people."""
+    """Return the table for people of the parameters that matter to each row, the most important
+    first.
+    """
     rows = [
         DriverRow(risk, driver)
         for risk in reliability.risks

@@ -1,4 +1,4 @@
-"""Workbook tables.xlsx: a sheet per table, for work in a spreadsheet."""
+"""Workbook tables.xlsx: one sheet for each table, for use in a spreadsheet."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from reports.tables.column import Table
 if TYPE_CHECKING:
     import xlsxwriter
 
-# a fixed time of creation: the same results, the same bytes
+# The time of creation is fixed, so that the same results give the same bytes.
 FIXED_CREATION_TIME = datetime(2000, 1, 1)
-MAX_COLUMN_WIDTH = 60  # characters of a column
-WIDTH_SAMPLE_ROWS = 200  # rows whose texts decide how wide a column is
-# From and below which numbers are shown with a power of ten
+MAX_COLUMN_WIDTH = 60  # characters
+WIDTH_SAMPLE_ROWS = 200  # rows whose texts determine the width of a column
+# Numbers outside this range are shown with a power of ten.
 MAX_PLAIN_NUMBER, MIN_PLAIN_NUMBER = 1e7, 1e-3
-# Of four digits each, by the power of ten of the largest number of a column.
+# Formats of four digits, by the power of ten of the largest number of a column.
 FORMATS_BY_POWER = {
     -3: "0.000000",
     -2: "0.00000",
@@ -41,11 +41,11 @@ def write_workbook(
 ) -> None:
     """Write the tables, numbers as numbers, after a first sheet that describes them.
 
-    left_out: files of the other tables.
+    left_out: names of the files of tables that are not in the workbook.
     """
     import xlsxwriter
 
-    # Texts stay texts, whatever they begin with; a quote keeps them so when they are edited.
+    # Texts stay texts, whatever they begin with; the quote prefix keeps this when they are edited.
     safe = {
         "in_memory": True,
         "strings_to_formulas": False,
@@ -93,7 +93,7 @@ def _about(
 
 
 def _sheet(book: xlsxwriter.Workbook, table: Table[Any], results: Results, bold: Any) -> None:
-    sheet = book.add_worksheet(table.name[:31])  # no more fits a sheet's name
+    sheet = book.add_worksheet(table.name[:31])  # the longest name of a sheet
     sheet.freeze_panes(1, 0)
     quoted = book.add_format({"quote_prefix": True})
     units = [column.unit(results.units) for column in table.filed]
@@ -112,7 +112,7 @@ def _sheet(book: xlsxwriter.Workbook, table: Table[Any], results: Results, bold:
 
 
 def _write(sheet: Any, row: int, column: int, value: Cell, shape: Any, quoted: Any) -> None:
-    if isinstance(value, float):  # most are: first, and without numpy
+    if isinstance(value, float):  # most values: tested first, and without numpy
         if math.isfinite(value):
             sheet.write_number(row, column, value, shape)
     elif value is None:
@@ -144,6 +144,6 @@ def _format(column: Sequence[Cell]) -> str:
 
 def _width(heading: str, column: Sequence[Cell]) -> float:
     texts = [len(v) for v in column[:WIDTH_SAMPLE_ROWS] if isinstance(v, str)]
-    # A heading is broken between its name and its unit.
+    # A heading may break between its name and its unit.
     words = max(len(word) for word in heading.replace("] ", "]").split(" "))
     return min(MAX_COLUMN_WIDTH, max(10, words + 3, *texts, 0))

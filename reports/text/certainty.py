@@ -1,4 +1,4 @@
-"""Whether to believe a run, in sentences: errors, what is open, and what was not checked."""
+"""The certainty of a run in sentences: errors, open values, and checks that were not made."""
 
 from __future__ import annotations
 
@@ -26,21 +26,23 @@ from reports.format.units import unit_name
 from reports.tables.strength.margins import not_made_briefly
 from reports.text.load_path import names
 
-OPEN_DIGITS = 4  # of open values, of which a fit has many
-MAX_FLIPS = 3  # values of one kind that change an outcome, in a sentence
+OPEN_DIGITS = 4  # significant digits of open values; fitted ones have many more
+MAX_FLIPS = 3  # largest number of values named that change an outcome
 MEASURED = {
     "landing": "force over time at landing",
     "joint": "clearance and stiffness of the lugs",
     "links": "stiffness of the links",
     "strength": "yield strength",
 }
-MIN_TIMES = 1.5  # below it a percentage says more
+MIN_TIMES = 1.5  # smaller ratios are given as a percentage
 Content = list[str]
 
 
 def accuracy(lines: Sequence[PinLine], results: Results) -> Content:
-    """Return a sentence on the errors of the maxima in the cases that govern, and on those of the
-    other cases where they exceed both these and the tolerance; nothing where no maximum has one.
+    """Return a sentence on the errors of the maxima in the governing cases.
+
+    It names the largest error of the other cases if that exceeds both these errors and the
+    tolerance. The list is empty where no maximum has an error.
     """
     unknown = names([x.row.pin for x in lines if not x.row.maximum.bounded])
     most = _largest_error([x.row for x in lines])
@@ -54,9 +56,7 @@ def accuracy(lines: Sequence[PinLine], results: Results) -> Content:
 
 
 def _largest_error(rows: Sequence[PinResult]) -> float | None:
-    """Return the largest relative error of rows with a maximum that exists and whose error is
-    known.
-    """
+    """Return the largest relative error of the rows that have a maximum with a known error."""
     return max(
         (
             row.error_estimate / row.max_von_mises
@@ -71,8 +71,8 @@ def _largest_error(rows: Sequence[PinResult]) -> float | None:
 
 
 def excess_stress(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the stress of the failing pin nearest to its factor, to be compared with
-    the errors; nothing where none fails.
+    """Return a sentence on the stress of the failing pin nearest to its factor, for comparison with
+    the errors; nothing where no pin fails.
     """
     rows = _failing(lines)
     if not rows:
@@ -87,8 +87,10 @@ def excess_stress(lines: Sequence[PinLine]) -> Content:
 
 
 def certainty(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the pins that fail whatever is open, those that do as described but not
-    for all of it, and those that are safe as described but fail for some of it.
+    """Return a sentence on the pins whose outcome holds or changes over the open values.
+
+    It names the pins that fail at all open values, those that fail as described but are safe at
+    some, and those that are safe as described but fail at some.
     """
     rows = _failing(lines)
     whatever = [r.pin for r in rows if not r.depends_on and factor_spread(r)]
@@ -111,9 +113,9 @@ def _failing(lines: Sequence[PinLine]) -> list[PinResult]:
 
 
 def skipped_checks(results: Results, lines: Sequence[PinLine], formulas: bool = True) -> Content:
-    """Return a sentence on the checks that lack a number; nothing if all were made.
+    """Return a sentence on the checks that lack data; nothing if all were made.
 
-    formulas: whether to name those by formula, which the matrix of requirements has, too.
+    formulas: whether to name checks by formula, which the matrix of requirements lists, too.
     """
     without = list(dict.fromkeys(x.pin for x in lines if without_range(x.row)))
     parts = [f"joint range of {names(without)}"] if without else []
@@ -142,8 +144,10 @@ def measure_first(unknown: Sequence[Unknown], lines: Sequence[PinLine] = ()) -> 
 
 
 def _measured(owner: Owner, pins: Sequence[str], unknown: Sequence[Unknown]) -> str:
-    """Return what to measure of an owner: of a joint the values that alone decide all of its pins,
-    if they do, since it is not one measurement.
+    """Return the quantity to measure first in the range of an owner.
+
+    A joint has several quantities: those that alone change the outcomes of all its pins, if there
+    are such.
     """
     of_joint = [x for x in unknown if owner == "joint" and x.rows[0][1].owner == owner]
     deciding = {x.what: {row.pin for row, _ in x.flipped} for x in of_joint if x.flipped}
@@ -155,7 +159,7 @@ def _measured(owner: Owner, pins: Sequence[str], unknown: Sequence[Unknown]) -> 
 def flips_words(unknown: Unknown, units: Units, lines: Sequence[PinLine] = ()) -> str:
     """Return whether a value alone changes an outcome: "F fails at half-sine", "no".
 
-    Checks by formula say only on what together they depend: "perhaps: A in shear".
+    Checks by formula state only the ranges on which they depend together: "perhaps: A in shear".
     """
     told = [_flip(row, d, units) for row, d in unknown.flipped]
     if told:
@@ -195,7 +199,7 @@ def _number(value: float) -> str:
 
 def _flip(row: PinResult, d: Dependence, units: Units) -> str:
     state = "may fail" if row.as_described in GOOD else "is safe"
-    at = f"with {d.value or d.what}" if d.over == "links" else _at(d, units)
+    at = f"with {d.value or d.what}" if d.over == "links" else _threshold_words(d, units)
     return f"{row.pin} {state} {'with ' if at and at == d.value else ''}{at}".strip()
 
 
@@ -211,13 +215,15 @@ def flips(row: PinResult, units: Units) -> str:
         what = d.value if d.what == BENEATH_CONTACT else d.what
         if d.what == TOGETHER or what == IMPULSE_RANGES_TOGETHER:
             what = f"the {d.over} values together"
-        at = "" if d.what == TOGETHER else _at(d, units)  # which would be a list
+        at = (
+            "" if d.what == TOGETHER else _threshold_words(d, units)
+        )  # several properties would be a list
         told.append(f"{what} ({at})" if at else what)
     return ", ".join(dict.fromkeys(told))
 
 
-def _at(d: Dependence, units: Units) -> str:
-    """Return at which values an outcome differs: "above 0.0007 in", "half-sine"; or nothing."""
+def _threshold_words(d: Dependence, units: Units) -> str:
+    """Return the values at which an outcome differs, "above 0.0007 in", "half-sine"; or nothing."""
     value = d.flips_at if d.flips_at is not None else d.at
     if value is None or d.over == PRESS_FIT:
         return "" if d.what == BENEATH_CONTACT else d.value
@@ -226,7 +232,7 @@ def _at(d: Dependence, units: Units) -> str:
 
 
 def state(outcome: str, pins: Sequence[str]) -> str:
-    """Return an outcome as the verb of some pins."""
+    """Return an outcome as the verb of a sentence about the pins."""
     plural = len(pins) > 1
     if outcome == NOT_DECIDED:
         return "are not decided" if plural else "is not decided"

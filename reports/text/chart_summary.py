@@ -1,4 +1,4 @@
-"""A speed-accuracy chart in words: the cheapest model, the cost of equal errors, its table."""
+"""A speed-accuracy chart in words: the cheapest model, the cost of equal errors, and the table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-FOUNDATION_MODEL = "foundation"  # whose error is not that of a mesh
+FOUNDATION_MODEL = "foundation"  # its error does not come from the mesh
 HARMONIC_MODEL_NAMES = {
     "harmonic": "the harmonic model",
     "harmonic+local": "the harmonic model with local solids",
@@ -38,9 +38,10 @@ Curve = Sequence[ChartPoint]
 
 @dataclass(frozen=True)
 class Cost:
-    """The cost of a curve at an error.
+    """The cost at which a curve reaches an error.
 
-    memory: MB. at_most: the coarsest mesh, whose error is smaller than the wanted one.
+    memory: MB.
+    at_most: whether this is the coarsest mesh, whose error is smaller than the wanted one.
     """
 
     seconds: float
@@ -49,18 +50,18 @@ class Cost:
 
 
 def staying(curve: Curve, wanted: float) -> Curve:
-    """Return the last points of a curve that are all within the error.
+    """Return the last points of a curve, all of which are within the wanted error.
 
-    An isolated point that is within it by chance does not count.
+    An isolated point that is within the error by chance does not count.
     """
     last = max((i for i, p in enumerate(curve) if error(p) > wanted), default=-1)
     return curve[last + 1 :]
 
 
 def cost(curve: Curve, wanted: float) -> Cost | None:
-    """Return the cost of an error, interpolated linearly on the log-log chart.
+    """Return the cost of the wanted error, interpolated linearly on the log-log chart.
 
-    None if the curve does not stay within the error.
+    The result is None if the curve does not stay within the error.
     """
     within = staying(curve, wanted)
     if not within:
@@ -120,7 +121,9 @@ def _foundation_error(chart: Chart) -> str:
 
 
 def _curves(chart: Chart, models: dict[str, str]) -> tuple[str, dict[str, Curve]]:
-    """Return the name and the curves by element of the first of some models that is charted."""
+    """Return the name and the curves, by element, of the first of the given models that
+    is charted.
+    """
     for model, name in models.items():
         by_element = {element: c for (m, element), c in chart.curves.items() if m == model}
         if by_element:
@@ -174,7 +177,7 @@ def _start(text: str) -> str:
 
 
 def curve_name(model: str, element: str) -> str:
-    """Return a short name for labels."""
+    """Return a short name of a curve for labels."""
     return SHORT_MODEL_NAMES.get(model) or SHORT_MODEL_NAMES.get(element) or f"{model}, {element}"
 
 

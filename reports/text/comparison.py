@@ -35,7 +35,7 @@ COMPARISON_NOTE = (
 )
 NO_INPUTS_NOTE = "One of the runs is of an earlier version, which did not keep the inputs."
 NO_REQUIREMENTS_NOTE = "One of the runs is of an earlier version, which lists no requirements."
-MAX_NAMED_PINS = 6  # in a sentence
+MAX_NAMED_PINS = 6  # largest number of pins named in a sentence
 NUMBER_WORDS = (
     *("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
 )
@@ -43,8 +43,8 @@ SAME_INPUTS_NOTE = "The inputs are the same."
 
 
 def review(comparison: RunComparison) -> str:
-    """Return what a review would say: how the lowest factor of each pin changed, and which
-    requirements are met or lost.
+    """Return the result of a review: the change of the lowest factor of each pin, and the
+    requirements that are newly met or lost.
 
     Example: "Pin E: 1.21 to 1.54; two requirements newly met, none lost."
     """
@@ -83,7 +83,9 @@ def _factor_changes(comparison: RunComparison) -> dict[str, float]:
 
 
 def _apart(*factors: float | None) -> list[str]:
-    """Return two factors with equally many digits, three or as many as show that they differ."""
+    """Return two factors with the same number of digits: three, or as many as show that they
+    differ.
+    """
     texts: list[str] = []
     for digits in range(END_DIGITS, MAX_DIGITS + 1):
         texts = ["none" if x is None else engineering(x, digits) for x in factors]

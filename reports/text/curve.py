@@ -1,4 +1,4 @@
-"""The curve of factors against one number on the terminal."""
+"""The curve of safety factors against one number, on the terminal."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 
 
 def print_curve(curve: FactorCurve, console: Console) -> None:
-    """Print the table, where the required factor is reached, and why designs have no factor."""
+    """Print the table, the values at which the required factor is reached, and the reasons for
+    missing factors.
+    """
     from rich.text import Text
 
     console.print(fitted_table(worst_table(curve), None, console.width))
@@ -32,7 +34,7 @@ def _idle(curve: FactorCurve) -> list[str]:
 
 
 def reached_lines(curve: FactorCurve) -> list[str]:
-    """Say for every pin where its factor passes the required one."""
+    """Return a sentence for every pin on the values at which its factor passes the required one."""
     if curve.required is None:
         judged = any(point.outcome.startswith((SAFE, FAILS)) for point in curve.points)
         return ["Required factors differ; each result is by its own."] if judged else []

@@ -21,7 +21,7 @@ Shown = tuple[Column[R], str, list[str]]  # a column, its heading and its texts
 def fitting(shown: Sequence[Shown[R]], width: int, gap: int = COLUMN_GAP) -> list[Shown[R]]:
     """Return the columns that fit side by side, in their order.
 
-    Those with the highest rank are left out first, those of rank 0 never.
+    Columns with the highest rank are left out first, columns of rank 0 never.
     """
     columns = list(shown)
     while sum(_width(column) + gap for column in columns) - gap > width:
@@ -47,7 +47,8 @@ def fitted_table(
 ) -> RichTable:
     """Return a table of the columns that fit; names too long for any terminal are folded.
 
-    colours: of the rows of a column, by its heading. gap: blanks between columns.
+    colours: of the rows of a column, by its heading.
+    gap: blanks between columns.
     """
     from rich.table import Table as RichTable
     from rich.text import Text
@@ -56,7 +57,7 @@ def fitted_table(
     shown = [(c, c.headed(units), texts) for c, texts in table.for_people()]
     columns = fitting(shown, width, gap)
     for column, heading, _ in columns:
-        # As Text: a unit in square brackets is no markup.
+        # Text, because rich would take a unit in square brackets for markup.
         rich_table.add_column(
             Text(heading),
             justify="right" if column.numeric else "left",

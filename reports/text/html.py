@@ -15,7 +15,9 @@ BODY_CELL_HTML = '<td style="text-align:{0}">{1}</td>'
 
 
 def safety_factors_html(results: Results) -> str:
-    """Return title, sentence on the worst row, safety factors with verdicts, and summary."""
+    """Return the title, a sentence on the worst row, the safety factors with verdicts, and the
+    summary.
+    """
     grid = shown_factors(detailed_rows(results)).grid(results.units)
     sides = ["right" if numeric else "left" for numeric in grid.numeric]
 

@@ -16,7 +16,7 @@ from reports.text.sizes import heavy, reached
 if TYPE_CHECKING:
     from rich.console import Console
 
-RESIDUAL_ROUND_OFF = 1e-6  # a residual that is round-off
+RESIDUAL_ROUND_OFF = 1e-6  # smaller residuals are round-off
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,18 @@ class ChangedDimension:
 class LightRow:
     """The result of a pin of least weight.
 
-    factor, factor_before: in the run of the new study as text, and before.
+    factor: as text, in the run of the new study. factor_before: in the given study.
     governs: the governing case.
-    weights: before, if only scaled, and now; None where they are not known.
-    residual: of the optimality conditions. dimensions: those that changed.
-    binding: active constraints with their multipliers. at: the factor at a probability, if
-    requested.
-    bands: those that changed. solved: number of designs. why: reason why the factor is not shown to
-    be reached. way: a note on a search that was not run or did not end.
-    outcome: with such a reason, what the new study shows (assess.judgement).
+    weights: before, of the pin that is only scaled, and now; None where they are not known.
+    residual: of the optimality conditions.
+    dimensions: those that changed.
+    binding: active constraints with their multipliers.
+    at: the factor at a probability, if requested.
+    bands: those that changed.
+    solved: number of designs.
+    why: the reason why the factor is not shown to be reached.
+    way: a note on a search that was not run or did not end.
+    outcome: the outcome of the new study with such a reason (assess.judgement).
     """
 
     pin: str
@@ -65,7 +68,7 @@ class LightRow:
 
     @property
     def saved(self) -> float | None:
-        """The saved fraction of the weight of the pin that is only scaled."""
+        """The saved fraction of the weight, relative to the pin that is only scaled."""
         _, scaled, now = self.weights
         return None if scaled is None or now is None else 1.0 - now / scaled
 
@@ -73,10 +76,10 @@ class LightRow:
 def print_light(
     rows: Sequence[LightRow], required: float | None, units: tuple[str, str, bool], console: Console
 ) -> None:
-    """Print a row per pin, the whole, and the changes.
+    """Print a row for each pin, the totals, and the changes.
 
-    required: None where it is not the same for all.
-    units: of length and of weight, or of volume where volumes are compared.
+    required: None where it is not the same for all pins.
+    units: the unit of length, that of weight or volume, and whether weights are compared.
     """
     from rich.text import Text
 
@@ -90,7 +93,7 @@ def print_light(
 
 
 def light_table(rows: Sequence[LightRow], weight: str) -> Table[LightRow]:
-    """Return a row per pin.
+    """Return the table with a row for each pin.
 
     weight: the heading of the weight, with the unit.
     """

@@ -11,16 +11,17 @@ from reports.data.row import GoverningLoad, PinResult, Units
 from reports.data.skeleton import Skeleton
 from reports.format.numbers import engineering
 
-LARGE_FORCE = 0.5  # of the largest force: what passes through the same pins
-MAX_NAMED_PINS = 6  # in a sentence; of more, their number is given
-SAME_FORCE = 0.15  # relative difference up to which a pin carries the force that is applied
+LARGE_FORCE = 0.5  # of the largest force; pins that carry more are on its path
+MAX_NAMED_PINS = 6  # with more pins, a sentence gives their number
+SAME_FORCE = 0.15  # relative difference up to which a pin carries the applied force
 
 
 def load_path(results: Results, rows: Sequence[PinResult]) -> str:
-    """Return the pins through which the largest forces of a case pass: "194,000 lbf goes J–E–A to
-    the frame; others at most 35,700." Where this is no single path, only the pins are named.
+    """Return a sentence on the pins through which the largest forces of a case pass.
 
-    rows: of the pins, the worst first, whose case it is.
+    Example: "194,000 lbf goes J–E–A to the frame; others at most 35,700." If there is no single
+    path, the pins are named without order.
+    rows: of the pins, the worst first; its case is described.
     """
     units = results.units
     in_case = [row for row in rows if row.case == rows[0].case and row.loads]
@@ -42,7 +43,7 @@ def load_path(results: Results, rows: Sequence[PinResult]) -> str:
 
 
 def names(pins: Sequence[str]) -> str:
-    """Return names of pins: "A", "A and B", "A, B and C"."""
+    """Return the names of pins as a list in words: "A", "A and B", "A, B and C"."""
     if len(pins) > MAX_NAMED_PINS:
         return f"{len(pins)} pins"
     return " and ".join(filter(None, [", ".join(pins[:-1]), pins[-1]])) if pins else ""
@@ -51,10 +52,11 @@ def names(pins: Sequence[str]) -> str:
 def _path(
     results: Results, rows: Sequence[PinResult], forces: Mapping[str, float]
 ) -> tuple[float, list[str]] | None:
-    """Return the one force that is applied and the pins that pass it on to the frame, in order;
-    None unless it enters at the first of them, and all carry about as much.
+    """Return the single applied force and the pins that transmit it to the frame, in order.
 
-    forces: by pin, the largest.
+    The result is None unless the force acts on a link of the first pin, and all pins carry about as
+    much as the force.
+    forces: the largest by pin.
     """
     skeleton = next((s for s in results.skeletons if s.case == rows[0].case), None)
     if skeleton is None or len(skeleton.loads) != 1 or len(skeleton.applied) != 1:
@@ -76,7 +78,7 @@ def _path(
 
 
 def _instant(skeleton: Skeleton, row: PinResult) -> int:
-    """Return the number of the instant of a row."""
+    """Return the index of the instant of a row."""
     if skeleton.time is None or row.time is None:
         return 0
     return int(np.argmin(np.abs(skeleton.time - row.time)))
@@ -85,7 +87,7 @@ def _instant(skeleton: Skeleton, row: PinResult) -> int:
 def _on_one_pin(row: PinResult, units: Units) -> str:
     load = max(row.loads, key=_size)
     if not _size(load):
-        return ""  # as on an idle press fit
+        return ""  # as on a press fit without loads
     return (
         f"The largest force on pin {row.pin} is {engineering(_size(load), 3)} {units.force}, at "
         f"{load.connection} ({row.case})."
@@ -97,6 +99,6 @@ def _size(load: GoverningLoad) -> float:
 
 
 def _largest(loads: Sequence[GoverningLoad]) -> float:
-    """Return the largest force of a link on a pin, or of all together, which its supports take."""
+    """Return the largest force on a pin: of a link, or the resultant of all links."""
     total = sum(np.asarray(load.force) for load in loads)
     return max(*map(_size, loads), float(np.linalg.norm(total)))

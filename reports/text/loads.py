@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-ROUND_OFF = 1e-12  # of the largest force in a case
+ROUND_OFF = 1e-12  # over the largest force of a case
 
 COLUMNS: list[Column[tuple[ReactionTable, int, PeakReaction]]] = [
     read_only("Case", lambda row: row[0].case, numeric=False),
@@ -29,7 +29,7 @@ COLUMNS: list[Column[tuple[ReactionTable, int, PeakReaction]]] = [
 
 
 def _clear_of_round_off(table: ReactionTable, peak: PeakReaction) -> float:
-    """Return the largest force of a connection, 0 where it is round-off of the others."""
+    """Return the largest force of a connection; 0 where it is round-off of the other forces."""
     largest = max(other.force for other in table.largest)
     return peak.force if peak.force > ROUND_OFF * largest else 0.0
 
@@ -46,7 +46,7 @@ def print_loads(results: Results, console: Console) -> None:
 
 
 def unresolved(table: ReactionTable, unit: str) -> str:
-    """Return the time intervals in which maxima are not certain."""
+    """Return the sentence on the time intervals in which maxima are not certain."""
     low, high = (short(float(f"{t:.6g}")) for t in table.unresolved[0])
     where = f"between {low} and {high}" if low != high else f"near {low}"
     more = f" and {len(table.unresolved) - 1} more" if len(table.unresolved) > 1 else ""
@@ -58,7 +58,10 @@ def unresolved(table: ReactionTable, unit: str) -> str:
 
 
 def least_angle(low: float) -> float:
-    """Return a transmission angle with one decimal, or more where that hides that it is small."""
+    """Return a transmission angle with one decimal.
+
+    It has more decimals where rounding would hide that the angle is small.
+    """
     small = low < MIN_TRANSMISSION_ANGLE
     rounded = (round(low, decimals) for decimals in range(1, 17))
     return next(x for x in rounded if (x < MIN_TRANSMISSION_ANGLE) == small)
@@ -75,7 +78,7 @@ def remarks(results: Results) -> list[str]:
         length = results.units.length
         where = "deg" if d.kind == "rotary" else length
         power = f"{results.units.force} {length}/{results.units.time}"
-        if d.time is None:  # of a drive, or of a stop or lock that holds
+        if d.time is None:  # at rest: a drive, or a stop or lock that holds
             lines.append(
                 f"{d.case}: {what} of {d.name} {engineering(d.force[0])} {unit}, power "
                 f"{engineering(d.power[0])} {power}, position {engineering(d.position[0])} {where}"

@@ -1,11 +1,11 @@
-"""What to change in a lug that fails: its thickness, its eye, its material, or the joint.
+"""Changes of a lug that fails: its thickness, its eye, its material, or the joint.
 
 Where the pin loads a lug evenly, the stress at the bore is F / (D t) times a factor of the eye,
-Ekvall's 2.75 (W/D - 1)^-0.675: it falls with the thickness and with a wider eye. Where a pin bends
-and loads the face of its lug, neither helps much: a stiffer pin does, in an eye that grows with it.
-All of a joint larger in the same ratio has the same stress times its inverse square. On clevises
-that were solved again the needed factor was reached within 4 %, or exceeded. A clause gives the
-dimension that just passes itself.
+Ekvall's 2.75 (W/D - 1)^-0.675. It falls with the thickness and with a wider eye. Where a pin bends
+and loads the face of its lug, neither helps much; a stiffer pin does, in an eye that grows with it.
+Scaling the whole joint divides the stress by the square of the scale. On clevises that were solved
+again the needed factor was reached within 4 %, or exceeded. A clause states the dimension that just
+passes it.
 
 Source: J. C. Ekvall, J. Aircraft 23(5), 1986, 438-443.
 """
@@ -30,10 +30,10 @@ from reports.format.numbers import engineering
 from reports.format.ranges import factor_text
 from reports.format.units import unit_name
 
-MAX_STRENGTH_RATIO = 3.0  # times the strength, which no other steel has
-MAX_THICKNESS_RATIO = 3.0  # times the thickness, beyond which the whole joint has to grow
-FACE_SHARE = 0.2  # of a lug's thickness: a largest stress nearer to a face is that of bending
-MAX_TOLD_LUGS = 3  # with what to change; the others are named
+MAX_STRENGTH_RATIO = 3.0  # required over given strength; no steel exceeds it
+MAX_THICKNESS_RATIO = 3.0  # required over given; beyond it the whole joint has to grow
+FACE_SHARE = 0.2  # of a lug's thickness; a maximum nearer to a face is caused by bending
+MAX_TOLD_LUGS = 3  # sentences with changes; the other lugs are only named
 SIZE_NOTE = "The command changes pins, not lugs."
 PASSING_WORDS = {
     "outer_diameter": "an eye of {}",
@@ -44,7 +44,7 @@ PASSING_WORDS = {
 
 
 def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
-    """Return sentences on the lugs that fail where a check of one is the worst of its pin."""
+    """Return sentences on the failing lugs of the pins whose worst check is one of a lug."""
     failing = _with_others(_failing(lines), results)
     whole = [
         c
@@ -61,7 +61,9 @@ def lug_advice(results: Results, lines: Iterable[PinLine]) -> list[str]:
 
 
 def lug_peaks(lines: Iterable[PinLine], units: Units) -> str:
-    """Return a sentence on the stress of the lugs that fail by it; empty without any."""
+    """Return a sentence on the stress at the bore of the lugs that fail by it; empty
+    without any.
+    """
     told = [
         f"{_with_wall(c)} {engineering(c.margin.demand, 3)} {units.stress}"
         for c in _failing(lines)
@@ -84,13 +86,14 @@ def _each_once(checks: Iterable[JudgedCheck]) -> list[JudgedCheck]:
 
 
 def _with_others(failing: list[JudgedCheck], results: Results) -> list[JudgedCheck]:
-    """Return also the other lugs of these pins that fail, and the other wall of a bushed one, each
-    by its worst check: to mend one does not make the others safe.
+    """Return the failing checks, and the worst of each other lug of these pins that fails.
+
+    Both walls of a bushed lug are included, because a change for one does not make the others safe.
     """
     if not failing:
         return failing
     pins = {c.pin for c in failing}
-    # results.margins have every check at its worst place alone, thus of one lug.
+    # results.margins has every check only at its worst place, so only for one lug.
     rows = [row for row in results.pins if row.pin in pins]
     margins = (PinMargin(row.pin, row.case, m) for row in rows for m in row.margins)
     others = sorted(checks_of(results, margins), key=lambda check: check.rank)
@@ -100,7 +103,7 @@ def _with_others(failing: list[JudgedCheck], results: Results) -> list[JudgedChe
 
 
 def _with_wall(check: JudgedCheck) -> str:
-    """Return the name of a lug, and in brackets the wall that is meant if it has a bushing."""
+    """Return the name of a lug, followed for a bushed lug by the wall in brackets."""
     wall = bore_wall(check.check)
     return f"{check.lug} ({wall})" if wall else check.lug
 
@@ -110,7 +113,7 @@ def _at_bore(check: JudgedCheck) -> bool:
 
 
 def _of_whole(checks: Sequence[JudgedCheck]) -> str:
-    """Return the sentence on lugs that no change of the eye alone mends."""
+    """Return the sentence on lugs for which no change of the eye alone is enough."""
     named = _and([f"{c.lug} of {c.pin}" for c in checks])
     factors = _and([engineering(c.factor, 3) for c in checks])
     times = _and([engineering(sqrt(c.used), 2) for c in checks])
@@ -123,9 +126,11 @@ def _of_whole(checks: Sequence[JudgedCheck]) -> str:
 
 @dataclass(frozen=True)
 class Needs:
-    """The needs of lugs of a pin that are alike.
+    """The changes that similar lugs of a pin need.
 
-    wall: of bushed ones. factor: with its place. change: what is enough.
+    wall: of bushed lugs.
+    factor: with its place.
+    change: a sufficient change.
     """
 
     pin: str
@@ -135,7 +140,7 @@ class Needs:
 
 
 def _needs(check: JudgedCheck, results: Results) -> Needs:
-    """Return what the lug of a check needs."""
+    """Return the changes that the lug of a check needs."""
     lug, ways, wall = _lug(check, results), _ways(check, results), bore_wall(check.check)
     where = "at the bore" if _at_bore(check) else check.check
     if wall == "hole":
@@ -145,7 +150,7 @@ def _needs(check: JudgedCheck, results: Results) -> Needs:
 
 
 def _of_lugs(needs: Needs, checks: Sequence[JudgedCheck]) -> str:
-    """Return the sentence on lugs that are alike, by a check of each."""
+    """Return the sentence on similar lugs. checks: one of each lug."""
     many, which = len(checks) > 1, _and([c.lug for c in checks])
     of_bushing = f"The bushing{'s' * many} of l" if needs.wall == "bushing" else "L"
     lugs = f"{of_bushing}ug{'s' * many} {which} of {needs.pin}"
@@ -163,14 +168,14 @@ def _shape(check: JudgedCheck, results: Results) -> PinShape | None:
 
 
 def _pressed(lug: LugSketch | None) -> bool:
-    """Return whether a bushing's press fit is a part of a lug's stress, which no size takes off in
-    proportion.
+    """Return whether the press fit of a bushing stresses a lug; no size reduces this part of the
+    stress in proportion.
     """
     return lug is not None and lug.interference > 0.0
 
 
 def _ways(check: JudgedCheck, results: Results) -> list[str]:
-    """Return the changes of which each alone is enough, as an estimate."""
+    """Return the changes of which each is enough by itself, as an estimate."""
     ways, units = list[str](), results.units
     shape, lug = _shape(check, results), _lug(check, results)
     if _at_bore(check) and shape and lug and not _pressed(lug):
@@ -204,7 +209,9 @@ def _of_face(used: float, lug: LugSketch, pin: float, units: Units) -> list[str]
 
 
 def _of_eye(used: float, lug: LugSketch, hole: float, units: Units) -> Iterator[str]:
-    """Yield the thickness, and the width of the eye within those of the tests, that are enough."""
+    """Yield a sufficient thickness, and a sufficient width of the eye if it is within the tested
+    widths.
+    """
     width, thickness = lug.outer_diameter, lug.z[1] - lug.z[0]
     yield f"a thickness of {_now(used, thickness, units)}"
     if hole > 0.0:

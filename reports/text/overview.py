@@ -1,4 +1,6 @@
-"""The overview of a run in sentences: what is decided, why, what to do, whether to believe it."""
+"""The overview of a run in sentences: the outcome, the reasons, the changes needed, the
+certainty.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ from reports.text.lug_advice import lug_advice, lug_peaks
 
 MAX_NAMED_CASES = 4
 ROUND_OFF = 1e-9
-STRONGER = 3.0  # times the strength, which no other steel has
+STRONGER = 3.0  # required over given strength; no steel exceeds it
 ESTIMATES_TEXT = (
     "Diameters are estimates: of five pins tried, 0.9 to 1.1 times what pinstress size found."
 )
@@ -35,9 +37,14 @@ ESTIMATES_TEXT = (
 def decisions(results: Results, lines: Sequence[PinLine]) -> str:
     """Return sentences on the pins that do not fail, and on cases that never govern.
 
-    lines: here and below, those of the pins (`pin_lines`).
+    lines: those of the pins (`pin_lines`), as in all functions of this module.
     """
-    parts = [_undecided(lines), _depending(results, lines), _good(lines), _also(results, lines)]
+    parts = [
+        _undecided(lines),
+        _depending(results, lines),
+        _good(lines),
+        _other_rows(results, lines),
+    ]
     quiet = quiet_cases(results, lines)
     if len(quiet) > MAX_NAMED_CASES:
         parts.append(_all_quiet(quiet))
@@ -49,7 +56,8 @@ def decisions(results: Results, lines: Sequence[PinLine]) -> str:
 def why(results: Results, lines: Sequence[PinLine], most: int, places: bool = True) -> Content:
     """Return sentences on the forces, the internal forces that govern, and the largest stresses.
 
-    most: number of pins with their stress. places: whether to tell where those of several are.
+    most: largest number of pins whose stress is given.
+    places: whether to name the places of the largest stresses of several pins.
     """
     solved = [line for line in lines if line.row.max_von_mises]
     if not solved:
@@ -64,7 +72,7 @@ def why(results: Results, lines: Sequence[PinLine], most: int, places: bool = Tr
 
 
 def _unsolved(lines: Sequence[PinLine]) -> Content:
-    """Return the reason and the remedy of the pins without a solution, each once."""
+    """Return the note on each pin without a solution; pins with the same note share it."""
     notes = grouped((x.row.note, x.pin) for x in lines if x.row.max_von_mises is None)
     told = ((names(list(dict.fromkeys(pins))), note) for note, pins in notes.items() if note)
     return [f"{which}: {note.removesuffix('.')}." for which, note in told]
@@ -72,11 +80,11 @@ def _unsolved(lines: Sequence[PinLine]) -> Content:
 
 @dataclass(frozen=True)
 class Actions:
-    """The changes that bring the pins to their factor.
+    """The changes by which the pins reach their factor.
 
     repairs: sentences on failing checks by formula, and on singularities that can be removed.
     remarks: sentences on diameters and on other ways.
-    command: what sizes the pins; empty if nothing does.
+    command: the command that sizes the pins; empty if none can be sized.
     """
 
     repairs: Content
@@ -85,7 +93,7 @@ class Actions:
 
 
 def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Actions:
-    """Return the changes that bring the pins to their factor.
+    """Return the changes by which the pins reach their factor.
 
     study: its path, by default its name.
     """
@@ -103,7 +111,7 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
 def _undecided(lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == NOT_DECIDED]
     alone = _one_pin(lines)
-    if alone:  # of whose worst case the headline tells
+    if alone:  # the headline describes the worst case of a single pin
         open_ = [line for line in open_ if line is not lines[0]]
     if not open_:
         return ""
@@ -122,7 +130,7 @@ def _one_pin(lines: Sequence[PinLine]) -> bool:
 def _depending(results: Results, lines: Sequence[PinLine]) -> str:
     open_ = [line for line in lines if line.outcome == DEPENDS]
     told = [f"{x.pin} on {flips(x.row, results.units)}" for x in open_]
-    if not told or _one_pin(lines):  # which the headline tells
+    if not told or _one_pin(lines):  # the headline describes a single pin
         return ""
     first, *rest = told
     return f"{first.replace(' on ', ' depends on ', 1)}{''.join(f'; {x}' for x in rest)}."
@@ -139,12 +147,14 @@ def _good(lines: Sequence[PinLine]) -> str:
     return f"{names([x.pin for x in good])} {'are' if len(good) > 1 else 'is'} {state}."
 
 
-def _also(results: Results, lines: Sequence[PinLine]) -> str:
-    """Return sentences on the rows that are not safe besides the worst of each pin, by case."""
+def _other_rows(results: Results, lines: Sequence[PinLine]) -> str:
+    """Return sentences, by case, on the rows that are not safe, other than the worst row of each
+    pin.
+    """
     shown = {(x.row.pin, x.row.case) for x in lines}
-    more = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
+    others = [r for r in results.pins if r.outcome not in GOOD and (r.pin, r.case) not in shown]
     by_case: dict[str, dict[str, list[str]]] = {}
-    for row in sorted(more, key=lambda r: OUTCOME_ORDER[r.outcome]):
+    for row in sorted(others, key=lambda r: OUTCOME_ORDER[r.outcome]):
         by_case.setdefault(row.case, {}).setdefault(row.outcome, []).append(row.pin)
     told = [
         f"in {case} " + ", ".join(f"{names(p)} {state(s, p)}" for s, p in of.items())
@@ -179,7 +189,7 @@ def _quiet(case: QuietCase, pins: int) -> str:
 
 def _dominating(lines: Sequence[PinLine]) -> str:
     """Return a sentence on the internal forces that govern pins."""
-    # Pins once, whatever the number of their lines.
+    # Each pin is named once, even if it has several lines.
     pairs = dict.fromkeys((kind, line.pin) for line in lines if (kind := action(line.row)))
     by_action = grouped(pairs)
     told = [
@@ -211,24 +221,24 @@ def _peaks(results: Results, lines: Sequence[PinLine], shapes: dict[str, PinShap
 
 
 def _permitted(row: PinResult) -> str:
-    """Return the stress that the yield strength permits in a row: "22,500 permitted"."""
+    """Return the permitted stress of a row in words: "22,500 permitted"."""
     if not row.yield_strength:
         return ""
     word = "permitted" if row.required else "yield strength"
-    # The strength is factor times stress: of one material it differs in its last digits.
+    # The strength is factor times stress, so rows of one material may differ by round-off.
     permitted = float(f"{row.yield_strength / limit(row):.9g}")
     return f"{engineering(permitted, 3)} {word}"
 
 
 def _place(line: PinLine, shapes: dict[str, PinShape]) -> str:
-    """Return the place of a pin's largest stress in brackets, of a pin with its shape."""
+    """Return the place of a pin's largest stress in brackets; empty without a shape of the pin."""
     shape = shapes.get(line.pin)
     words = place_words(line.row, shape) if shape else ""
     return f" ({words})" if words else ""
 
 
 def _exceeded(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on each check by formula that a pin fails, with what it lacks at worst."""
+    """Return a sentence on each check by formula that a pin fails, for its worst case."""
     checks = [x for x in lines if x.check.row is None and not x.check.lug]
     failing = [x for x in checks if x.outcome == FAILS and x.check.factor]
     used = grouped(((x.pin, x.check.check), x.check.used) for x in failing)
@@ -236,9 +246,10 @@ def _exceeded(lines: Sequence[PinLine]) -> Content:
 
 
 def _lacking(check: str, used: float) -> str:
-    """Return what a check lacks of which so many times what is allowed is used.
+    """Return the increase that a check needs.
 
-    Damage grows with a power of stress, so that a life says little of the strength that it needs.
+    used: required over actual factor. Damage grows with a power of stress, so for fatigue the life
+    is given instead of the strength.
     """
     if check == FATIGUE_LIFE:
         return f"{engineering(used, 3)} times the life that it has ({check})"
@@ -265,7 +276,7 @@ def _eyes(results: Results, lines: Sequence[PinLine]) -> Content:
 
 
 def _loose(results: Results) -> Content:
-    """Return a sentence on each pin that comes loose, with the interference that would hold."""
+    """Return a sentence on each pin that comes loose, with the interference that would hold it."""
     lost = grouped(
         (r.pin, (r.case, d)) for r in results.pins for d in r.depends_on if d.over == PRESS_FIT
     )
@@ -282,7 +293,7 @@ def _loose(results: Results) -> Content:
 
 
 def _near(lines: Sequence[PinLine]) -> Content:
-    """Return a sentence on the pins that are within their error of a limit."""
+    """Return a sentence on the pins that are not decided because a limit is within their error."""
     rows = [x.row for x in lines if x.outcome == NOT_DECIDED and x.check.row is not None]
     near = [row.pin for row in rows if undecided_because(row).startswith(WITHIN_ERROR)]
     return [f"A smaller tolerance may decide {names(near)}."] if near else []
@@ -291,13 +302,13 @@ def _near(lines: Sequence[PinLine]) -> Content:
 def _other_ways(results: Results, article: str) -> Content:
     """Return sentences on a stronger material and a longer impulse for the worst pin.
 
-    article: of the strength, "Or a" after another way.
+    article: the beginning of the first sentence, "Or a" after another way.
     """
     worst: Remedy = results.changes[0]
     row = results[worst.pin, worst.case]
     strength = f"{engineering(rounded_up(worst.yield_strength), 3)} {results.units.stress}"
     given = row.yield_strength or 0.0
-    # The strength counts errors, and the stress beneath contact, which the factor leaves out.
+    # Unlike the factor, the strength includes errors and the stress beneath contact.
     contact = row.maximum.places.contact if row.maximum.places else None
     if contact and worst.yield_strength <= (1.0 + ROUND_OFF) * worst.required * contact.upper_end:
         strength += " beneath its lugs, error included"

@@ -1,4 +1,4 @@
-"""A pin's result in a case, and its drawing, in sentences."""
+"""The result of a pin in a case, and the caption of its drawing, in sentences."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _depends(pin: PinResult, units: Units) -> str:
 def drawing_caption(shape: PinShape, units: Units, zoned: bool = True) -> str:
     """Return the caption of the drawing of a pin.
 
-    zoned: whether it shows excluded zones.
+    zoned: whether the drawing shows excluded zones.
     """
     zones = (
         " Numbered red rings: stress singularities, filled where one governs; red stripes: the "

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-MAX_REASONS = 5  # of designs without a result, that are named: the most frequent
+MAX_REASONS = 5  # named reasons for designs without a result, the most frequent first
 
 
 def sentence(reliability: Reliability, risk: Risk) -> str:

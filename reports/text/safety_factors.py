@@ -38,7 +38,8 @@ OUTCOME_COLOURS = {SAFE: "green", BELOW_YIELD: "green", FAILS: "red", YIELDS: "r
 
 
 def print_safety_factors(results: Results, console: Console, study: str = "") -> None:
-    """Print the outcome in a sentence, a line for each pin, why, what to do, and what is doubtful.
+    """Print the outcome in a sentence, a line for each pin, the reasons, the changes needed, and
+    the errors.
 
     study: its path, by default its name.
     """
@@ -47,7 +48,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     lines = pin_lines(results)
     unknown = unknowns(line.row for line in lines)
     if lines:
-        # As Text: a name in square brackets is no markup.
+        # Text, because rich would take a name in square brackets for markup.
         console.print(Text(headline(results), "bold"))
         if text := decisions(results, lines):
             console.print(Text(text))
@@ -62,7 +63,7 @@ def print_safety_factors(results: Results, console: Console, study: str = "") ->
     else:
         console.print(Text("No pin was solved."))
     for title, sentences, command in _parts(results, lines, unknown, study):
-        alone = not sentences  # a command is to be copied, so it stays in one line
+        alone = not sentences  # a command stays on one line, so that it can be copied
         told = Text.assemble((f"{title} ", "bold"), " ".join(sentences or [command]))
         console.print(told, soft_wrap=alone)
         if sentences and command:
@@ -86,7 +87,7 @@ def _of_changes(results: Results) -> Results:
 def _parts(
     results: Results, lines: list[PinLine], unknown: list[Unknown], study: str
 ) -> list[tuple[str, list[str], str]]:
-    """Return the titles, sentences and commands under the table; only those that say something."""
+    """Return the title, sentences and command of each part under the table, without empty parts."""
     steps = actions(results, lines, study)
     brief = bool(steps.command) and len(results.changes) > 1  # the table has the diameters
     notes = [note for note in caveats(results) if not note.startswith(ALL_CONVERGED)]

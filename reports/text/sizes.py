@@ -16,20 +16,21 @@ from reports.text.safety_factors import OUTCOME_COLOURS
 if TYPE_CHECKING:
     from rich.console import Console
 
-MIN_SLENDERNESS = 1.0  # length over diameter below which a pin is wider than long
+MIN_SLENDERNESS = 1.0  # length over diameter; shorter pins are wider than long
 
 
 @dataclass(frozen=True)
 class SizeRow:
     """The result of sizing a pin.
 
-    before, after: its distinct diameters (None: not sized).
-    factor_before, factor: the lowest factor before, roughly, and in the new study, as text.
-    governs: the governing case of that. weights: before and after (None without a density).
+    before, after: its distinct diameters; `after` is None if it was not sized.
+    factor_before: the lowest factor before, roughly. factor: the lowest in the new study, as text.
+    governs: the governing case of the new study.
+    weights: before and after; None without a density.
     slenderness: length over largest diameter under a link.
     why: the reason why the required factor is not reached, if it is not.
-    limited: whether limits of the study forbid it.
-    outcome: with such a reason, what the new study shows (assess.judgement).
+    limited: whether limits of the study prevent reaching it.
+    outcome: the outcome of the new study with such a reason (assess.judgement).
     stricter: a hand check with a smaller factor, if any.
     """
 
@@ -61,10 +62,10 @@ def print_sizes(
     console: Console,
     written: bool = True,
 ) -> None:
-    """Print a row per pin and the number of pins that reach the factor.
+    """Print a row for each pin and the number of pins that reach the factor.
 
-    required: None where it is not the same for all.
-    written: whether there is a new study.
+    required: None where it is not the same for all pins.
+    written: whether a new study was written.
     """
     from rich.text import Text
 
@@ -82,11 +83,12 @@ def print_sizes(
 
 
 def reached(whys: Sequence[str], depending: int, required: float | None, where: str) -> str:
-    """Return how many pins reach the factor: "2 of 3 pins reach the safety factor 2 ...".
+    """Return the number of pins that reach the factor: "2 of 3 pins reach the safety factor 2 ...".
 
-    whys: the reasons why pins do not, empty for those that do. depending: the number of those
-    that do as described, but not over all ranges of the study.
-    required: None where it is not the same for all.
+    whys: the reason why each pin does not reach it, empty for pins that do.
+    depending: the number of pins that reach it as described, but not over all ranges of the study.
+    required: None where it is not the same for all pins.
+    where: the run in which they reach it, in words; may be empty.
     """
     everywhere = sum(not why for why in whys)
     as_described = everywhere + depending
@@ -99,7 +101,9 @@ def reached(whys: Sequence[str], depending: int, required: float | None, where: 
 
 
 def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
-    """Yield the objections that an engineer would have to the sizes."""
+    """Yield objections to the sizes: pins wider than long, and hand checks with a smaller
+    factor.
+    """
     if wide := [row.pin for row in rows if row.after and row.slenderness < MIN_SLENDERNESS]:
         yield (
             f"Wider than long: {', '.join(wide)}. No pin is made like this: use a stronger "
@@ -110,7 +114,7 @@ def _remarks(rows: Sequence[SizeRow]) -> Iterator[str]:
 
 
 def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
-    """Return a row per pin."""
+    """Return the table with a row for each pin."""
     columns: list[Column[SizeRow]] = [
         *texts("Pin=pin Result=result"),
         read_only("factor", lambda row: row.factor),
@@ -129,5 +133,5 @@ def _joined(diameters: tuple[float, ...] | None) -> str:
 
 
 def heavy(weight: float | None) -> str:
-    """Return a weight in words; a dash where it is not known."""
+    """Return a weight as text; a dash where it is not known."""
     return DASH if weight is None else engineering(weight, 3)

@@ -17,20 +17,22 @@ from reports.format.numbers import short
 from reports.format.words import BEYOND_YIELD, but_words, over_words, undecided_because
 
 ALL_CONVERGED = "All maxima have converged"
-MAX_LISTED_CASES = 4  # cases of a pin; of more, their number is given
+MAX_LISTED_CASES = 4  # of a pin; with more cases their number is given
 
 
 def summary(results: Results) -> str:
-    """Return sentences on pins that are safe, those that are not, and rows without a maximum."""
+    """Return sentences on the outcome of every pin, the ranges on which it depends, and the
+    caveats.
+    """
     if not results.pins:
         return "No pin was solved."
     decided = [_against_required(results), _depending(results)]
-    besides = [_without_range(results), _at_edges(results), _negative(results)]
-    return " ".join(part for part in (*decided, *besides, *caveats(results)) if part)
+    exceptions = [_without_range(results), _at_edges(results), _negative(results)]
+    return " ".join(part for part in (*decided, *exceptions, *caveats(results)) if part)
 
 
 def caveats(results: Results) -> list[str]:
-    """Return sentences on rows beyond yield, on those without a converged maximum, and on checks by
+    """Return sentences on rows beyond yield, on rows without a converged maximum, and on checks by
     formula that leave out cuts.
     """
     ways = (_yielding, _unknown, _without_cuts)
@@ -55,7 +57,9 @@ def _against_required(results: Results) -> str:
 
 
 def _with_reasons(checks: list[JudgedCheck]) -> str:
-    """Return the pins with the reasons for their outcome, equal reasons together."""
+    """Return the pins with the reasons for their outcome; pins with the same reason are listed
+    together.
+    """
     together = grouped((_due_to(check), check.pin) for check in checks)
     return ", ".join(
         ", ".join(pins) + (f" ({why})" if why else "") for why, pins in together.items()
@@ -63,7 +67,9 @@ def _with_reasons(checks: list[JudgedCheck]) -> str:
 
 
 def _due_to(check: JudgedCheck) -> str:
-    """Return the reason; empty for the usual one, a stress above the permitted one."""
+    """Return the reason of an outcome; empty for the usual reason, a stress above the permitted
+    one.
+    """
     if check.row is None:
         return check.check
     if check.outcome == NOT_DECIDED:
@@ -97,7 +103,7 @@ def _depending(results: Results) -> str:
 
 
 def _at_edges(results: Results) -> str:
-    """Return a sentence on contact stress at lug edges, which no factor counts."""
+    """Return a sentence on contact stress at lug edges, which no safety factor includes."""
     if not any(p.places and p.places.contact and p.places.contact.edges for p in results.pins):
         return ""
     return "Contact stress at lug edges is reported separately (contact_edges.csv)."
@@ -133,7 +139,9 @@ def _negative(results: Results) -> str:
 
 
 def _listed(rows: Iterable[tuple[str, str]]) -> str:
-    """Return pins with their cases in parentheses (or their number); without any, the pin."""
+    """Return pins with their cases, or the number of cases, in parentheses; a pin without cases
+    alone.
+    """
     cases: dict[str, list[str]] = {}
     for pin, case in rows:
         cases.setdefault(pin, []).extend([case] if case else [])
@@ -151,23 +159,25 @@ def _unknown(results: Results) -> str:
     verdicts = [p.verdict for p in results.pins]
     singular = verdicts.count("singular")
     wide = [p for p in results.pins if p.verdict == "unconverged"]
-    # Too few meshes leave a row unconverged also within the tolerance.
+    # With too few meshes a row is unconverged even if its error is within the tolerance.
     decided = [p for p in wide if p.outcome != NOT_DECIDED and not _within(p, results.tolerance)]
     loose = len(wide) - len(decided)
     unsolved = verdicts.count("rigid") + verdicts.count("failed")
     text = ""
     if singular:
-        text = f"{_of(singular, total)} {_is(singular)} singular: no maximum exists."
+        text = f"{_share_of_rows(singular, total)} {_is(singular)} singular: no maximum exists."
     if loose:
-        text += f" {_of(loose, total)} did not converge."
+        text += f" {_share_of_rows(loose, total)} did not converge."
     if decided:
         tolerance = f"{short(100.0 * results.tolerance)} %"
         many = len(decided)
-        text += f" {_of(many, total)} {_is(many)} decided with an error above {tolerance}"
+        text += (
+            f" {_share_of_rows(many, total)} {_is(many)} decided with an error above {tolerance}"
+        )
         minor = sum(p.minor for p in decided)
         text += f", {minor} far below another case of the pin." if minor else "."
     if unsolved:
-        text += f" {_of(unsolved, total)} could not be solved."
+        text += f" {_share_of_rows(unsolved, total)} could not be solved."
     return text.strip() or f"{ALL_CONVERGED} to {short(100.0 * results.tolerance)} %."
 
 
@@ -177,7 +187,7 @@ def _within(row: PinResult, tolerance: float) -> bool:
     return error is not None and error <= tolerance * (row.max_von_mises or 0.0)
 
 
-def _of(number: int, total: int) -> str:
+def _share_of_rows(number: int, total: int) -> str:
     return f"{number} of {counted(total, 'row')}"
 
 

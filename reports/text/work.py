@@ -1,4 +1,4 @@
-"""The work of all checks on the terminal (--show-work)."""
+"""The working of all checks on the terminal (--show-work)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def print_work(results: Results, console: Console) -> None:
-    """Print every check of each pin and case, where it is worst, with formula and numbers."""
+    """Print every check of each pin and case at its worst place, with formula and numbers."""
     from rich.text import Text
 
     pairs = dict.fromkeys((m.pin, m.case) for m in results.margins)

@@ -1,4 +1,4 @@
-"""Fields on meshes: VTU files for ParaView with loads and bands, and pictures."""
+"""Fields on meshes as VTU files for ParaView, with loads and bands."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from reports.data.fields import BandLoad, Field, Volume
 from reports.data.row import Units
 from reports.vtk.writer import Block, write_block, write_multiblock, write_series
 
-# From xx, yy, zz, yz, xz, xy to the order of VTK's symmetric tensors, XX YY ZZ XY YZ XZ.
+# Order of our components xx, yy, zz, yz, xz, xy in VTK's symmetric tensors XX YY ZZ XY YZ XZ.
 VTK_TENSOR_ORDER = (0, 1, 2, 5, 3, 4)
-TETRAHEDRON_FACES = {  # of a tetrahedron: corners, then the middles of their edges
+TETRAHEDRON_FACES = {  # local nodes: corners, then the midpoints of the edges
     "tetra10": ((0, 2, 1, 6, 5, 4), (0, 1, 3, 4, 8, 7), (1, 2, 3, 5, 9, 8), (0, 3, 2, 7, 9, 6)),
     "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)),
 }
@@ -27,12 +27,12 @@ Arrays = dict[str, NDArray[Any]]
 
 
 def point_data(field: Field, units: Units) -> Arrays:
-    """Return arrays at the nodes under names with units.
+    """Return the arrays at the nodes, under names with units.
 
-    They are displacement (N, 3), stress (N, 6: XX, YY, ZZ, XY, YZ, XZ, ParaView's components of a
-    symmetric tensor), von Mises (N,), von Mises envelope (N,; NaN inside), with a yield strength
-    the factor of safety, and for a pin in lugs the mean pressure of each cell of contact and
-    whether it is pressed (0 or 1).
+    They are: displacement (N, 3); stress (N, 6: XX, YY, ZZ, XY, YZ, XZ, ParaView's components of a
+    symmetric tensor); von Mises (N,); von Mises envelope (N,; NaN inside); with a yield strength
+    the safety factor by the envelope; and for a pin in lugs the mean pressure of each contact cell
+    and whether the node is pressed (0 or 1).
     """
     stress = units.stress
     data: Arrays = {
@@ -42,7 +42,7 @@ def point_data(field: Field, units: Units) -> Arrays:
         f"von Mises envelope [{stress}]": field.envelope,
     }
     if field.yield_strength is not None:
-        lowest = np.finfo(np.float32).tiny * field.yield_strength  # a factor that is no infinity
+        lowest = np.finfo(np.float32).tiny * field.yield_strength  # keeps the factor finite
         data["factor of safety"] = field.yield_strength / np.maximum(field.envelope, lowest)
     if field.contact_pressure is not None:
         data[f"cell mean pressure [{stress}]"] = field.contact_pressure
@@ -59,8 +59,8 @@ def write_vtu(field: Field, path: Path, units: Units) -> None:
 
 
 def block(field: Field, units: Units) -> Block:
-    """Return the part of a field that a VTU file has."""
-    # "TimeValue" is the name by which VTK knows a file's time.
+    """Return the part of a field that its own VTU file contains."""
+    # VTK reads the time of a file from "TimeValue".
     whole: Arrays = {} if field.time is None else {"TimeValue": np.array([field.time])}
     if field.beneath is not None:
         stress, place = field.beneath
@@ -72,14 +72,15 @@ def block(field: Field, units: Units) -> Block:
 def write_pin(field: Field, name: str, directory: Path, units: Units) -> None:
     """Write NAME.vtu, and NAME.vtm, which adds loads, bands, volume and local solids (NAME/*.vtu).
 
-    With stills, NAME.pvd has the same along the motion.
+    Without loads only NAME.vtu is written. With stills, NAME.pvd contains the pin, loads and bands
+    along the motion.
     """
     write_vtu(field, directory / f"{name}.vtu", units)
     if not field.loads:
         return
     folder = directory / name
     folder.mkdir()
-    # Here and not in the field's own file, for meshio reads none that has texts.
+    # Texts are here and not in the field's own file, because meshio reads no file with texts.
     texts = {"pin": [field.pin], "case": [field.case], "verdict": [field.verdict]}
     write_block(replace(_loads(field.loads, units), whole=texts), folder / "loads.vtu")
     write_block(_bands(field.loads, units), folder / "bands.vtu")
@@ -138,7 +139,7 @@ def _write_stills(field: Field, directory: Path, units: Units) -> list[tuple[flo
 
 
 def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
-    """Return a point at every band's middle with the force and moment that act there."""
+    """Return a point at the middle of every band with the force and moment that act there."""
     return Block(
         np.array([load.middle for load in loads]),
         np.arange(len(loads))[:, None],
@@ -153,7 +154,7 @@ def _loads(loads: Sequence[BandLoad], units: Units) -> Block:
 
 
 def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
-    """Return a cylinder on every band, each cell with its name and load."""
+    """Return a cylinder for every band, each cell with its name and load."""
     angle = 2.0 * np.pi * np.arange(QUADS_AROUND_BAND) / QUADS_AROUND_BAND
     circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(QUADS_AROUND_BAND)], axis=1)
     points = [load.radius * circle + np.array([0.0, 0.0, z]) for load in loads for z in load.z]
@@ -175,7 +176,11 @@ def _bands(loads: Sequence[BandLoad], units: Units) -> Block:
 
 
 def surface(field: Field) -> Field:
-    """Return the outside of a solid: the faces that only one tetrahedron has, and their nodes."""
+    """Return the outside of a solid: the faces that belong to one tetrahedron only, and their
+    nodes.
+
+    A field that is a surface already is returned unchanged.
+    """
     if field.cell_type not in TETRAHEDRON_FACES:
         return field
     faces = np.concatenate(
@@ -189,7 +194,7 @@ def surface(field: Field) -> Field:
 
 
 def local_solids(field: Field) -> Field:
-    """Return the part of the surface that local solids about cuts have computed."""
+    """Return the part of the surface that was computed by local solids about cuts."""
     z = field.points[field.cells, 2]
     near = 1e-9 * float(np.ptp(field.points[:, 2]))
     ends = [(z >= low - near).all(axis=1) & (z <= high + near).all(axis=1)
@@ -198,7 +203,7 @@ def local_solids(field: Field) -> Field:
 
 
 def _part(field: Field, cells: NDArray[np.int64], cell_type: str) -> Field:
-    """Return a field of some cells, and their nodes."""
+    """Return a field with some of the cells, and their nodes."""
     nodes, numbers = np.unique(cells, return_inverse=True)
 
     def own(values: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What the VTU files of a run are of: in their field data, and in a list beside them."""
+"""The origin of the VTU files of a run: in their field data, and in a list next to them."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from reports.vtk.writer import add_field_data
 
 
 def identify_files(results: Results, files: Mapping[str, PinResult], directory: Path) -> None:
-    """Add to every VTU and VTM file of a run what it is of, and list them in index.json.
+    """Add its origin to every VTU and VTM file of a run, and list the files in index.json.
 
-    files: rows by the names of their files without suffix, of which those that exist count.
-    directory: with these files.
-
+    files: rows by the names of their files without suffix; names whose file does not exist are
+    ignored.
+    directory: the folder with these files.
     Raises: OSError.
     """
     rows = {name: row for name, row in files.items() if (directory / f"{name}.vtu").is_file()}
@@ -45,7 +45,7 @@ def identify_files(results: Results, files: Mapping[str, PinResult], directory: 
 def origin_data(results: Results, row: PinResult) -> dict[str, NDArray[np.float64]]:
     """Return the study, versions, units, pin, case, factor and verdict of a row as field data.
 
-    A text is the name of a number, 1, for meshio opens no file that has texts.
+    A text is the name of an array with the number 1, because meshio opens no file with texts.
     """
     known = {
         **_run(results),

@@ -21,26 +21,26 @@ from reports.vtk.fields import VTK_TENSOR_ORDER
 from reports.vtk.vtu import Vtu, read_vtu
 
 MAX_FIELD_SIZE = 2048 * MB
-MAX_COORDINATE = 1e15  # of coordinates; VTK computes with their squares in float32
+MAX_COORDINATE = 1e15  # VTK computes with squares of coordinates in float32
 
 
 @dataclass(frozen=True)
 class Opened:
-    """A folder with its results.json."""
+    """A results folder with the content of its results.json."""
 
     directory: Path
     content: dict[str, Any]
 
     @property
     def units(self) -> Units:
-        """The units of all its numbers."""
+        """The units of all numbers in the folder."""
         names = ("length", "force", "stress", "time")
         return Units(*(self.content["units"][name] for name in names))
 
     def row(self, pin: str | None, case: str | None) -> dict[str, Any]:
-        """Return the row of a pin and case; of several the one with the least safety factor.
+        """Return the row of a pin and case; of several the one with the smallest safety factor.
 
-        Raises: ValueError, naming the existing rows.
+        Raises: ValueError, with the names of the existing rows.
         """
         rows = self.content["pins"]
         matches = [r for r in rows if r["pin"] == (pin or r["pin"])]
@@ -49,7 +49,7 @@ class Opened:
             known_rows = ", ".join(f"{r['pin']} in {r['case']}" for r in rows) or "none"
             wanted = " in ".join(name for name in (pin, case) if name)
             raise ValueError(f"no {wanted or 'pin'}; there are {known_rows}")
-        # Without a yield strength the most stressed.
+        # Without a yield strength, the row with the largest stress is returned.
         return min(
             matches, key=lambda r: (r["safety_factor"] or np.inf, -(r["max_von_mises"] or 0))
         )
@@ -62,13 +62,13 @@ class Opened:
         return f"{text} ({verdict_words(row['verdict'], row['yields'])})"
 
     def only(self, row: dict[str, Any]) -> Opened:
-        """Return the folder with one row only, for a process that draws it."""
+        """Return the folder reduced to one row, for a process that draws it."""
         return Opened(self.directory, {"units": self.content["units"], "pins": [row]})
 
     def field(self, row: dict[str, Any]) -> Field:
         """Return the field of a row.
 
-        Raises: FileNotFoundError when none was written, Damaged, OSError.
+        Raises: FileNotFoundError if none was written, Damaged, OSError.
         """
         name = f"vtk/{row['pin']}_{row['case']}.vtu"
         try:
@@ -109,7 +109,7 @@ def _outside(row: dict[str, Any]) -> tuple[float, tuple[float, float, float]] | 
 def _data(mesh: Vtu, key: str, width: int, name: str, gaps: bool = False) -> Floats:
     """Return the numbers at the points.
 
-    gaps: whether some may be missing.
+    width: the number of components. gaps: whether numbers may be missing.
     Raises: Damaged.
     """
     values = mesh.data.get(key)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     import pyvista
 
 WINDOW_SIZE = (1200, 800)
-SUBDIVISIONS = 3  # of each quadratic triangle, so that round pins look round
-FEATURE_ANGLE = 30.0  # degrees between faces from which an edge is drawn
+SUBDIVISIONS = 3  # of each quadratic triangle, so that pins look round
+FEATURE_ANGLE = 30.0  # degrees; an edge is drawn between faces at a larger angle
 INK_COLOUR = "#222222"
 PRESSED_COLOUR = "#b4b4b4"
 
@@ -27,10 +27,10 @@ PRESSED_COLOUR = "#b4b4b4"
 def render_pin(
     field: Field, path_png: Path, units: Units, title: str, top: float | None = None
 ) -> None:
-    """Draw a pin's surface with its von Mises stress and mark the largest: a PNG of 1200x800.
+    """Draw the surface of a pin with its von Mises stress and mark the largest: a PNG of 1200x800.
 
-    top: the stress at which the colours end, where that is more than the largest, so that pictures
-    can be compared.
+    top: the stress at the end of the colour scale if it exceeds the largest stress, so that
+    pictures can be compared.
     """
     import pyvista
 
@@ -43,7 +43,7 @@ def render_pin(
 
 
 def show_pin(field: Field, units: Units, title: str) -> None:
-    """Show the picture of a pin in a window, until it is closed; needs a display."""
+    """Show the picture of a pin in a window until it is closed; this needs a display."""
     import pyvista
 
     plotter: Any = pyvista.Plotter(window_size=list(WINDOW_SIZE), title=title)
@@ -55,12 +55,12 @@ def show_pin(field: Field, units: Units, title: str) -> None:
 def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | None = None) -> None:
     peak = int(np.argmax(field.von_mises))
     largest, place, label = float(field.von_mises[peak]), field.points[peak], "max"
-    if field.outside is not None:  # colours would only show how fine meshes and cells are there
+    if field.outside is not None:  # inside, stress depends on the mesh and the contact cells
         largest, place = field.outside[0], np.asarray(field.outside[1])
         label = "max outside excluded zones" if field.pressed is None else "max of the surface"
     top = max(largest, top or 0.0)
     power = _power(top)
-    # VTK's font has no raised digits.
+    # VTK's font has no superscript digits.
     unit = units.stress if power == 0 else f"10^{power} {units.stress}"
     name = f"von Mises [{unit}]"
     surface = _surface(field, name, 10.0**power)
@@ -72,7 +72,7 @@ def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | Non
     plotter.add_text(
         _drawable(title), position=(24, WINDOW_SIZE[1] - 48), font_size=13, color=INK_COLOUR
     )
-    # Apart from the bar, whose own title lies on its labels.
+    # A separate text, because the title of the bar would overlap its labels.
     text = name if field.pressed is None else f"{name}; grey: pressed by lugs"
     plotter.add_text(
         text, position=(0.2 * WINDOW_SIZE[0], 0.1 * WINDOW_SIZE[1]), font_size=10, color=INK_COLOUR
@@ -84,12 +84,14 @@ def _draw(plotter: Any, field: Field, units: Units, title: str, top: float | Non
 
 
 def _power(largest: float) -> int:
-    """Return the power of ten, a multiple of three, that brings a large maximum below a million."""
+    """Return the power of ten, a multiple of three, that scales a stress of a million or more;
+    otherwise 0.
+    """
     return 0 if not 1e6 <= largest < np.inf else 3 * (int(np.floor(np.log10(largest))) // 3)
 
 
 def _drawable(text: str) -> str:
-    # VTK takes text between two dollar signs for TeX.
+    # VTK would take text between two dollar signs for TeX.
     return text.replace("$", "")
 
 
@@ -105,7 +107,7 @@ def _surface(field: Field, name: str, scale: float) -> pyvista.PolyData:
     grid.point_data[name] = (
         shown if field.pressed is None else np.where(field.pressed, np.nan, shown)
     )
-    # VTK's own filter: the arguments of pyvista's extract_surface change from version to version.
+    # VTK's own filter, because the arguments of pyvista's extract_surface change between versions.
     skin = vtkDataSetSurfaceFilter()
     skin.SetInputData(grid)
     skin.SetNonlinearSubdivisionLevel(SUBDIVISIONS)
@@ -135,7 +137,7 @@ def _add_surface(
     plotter.add_mesh(
         surface,
         scalars=name,
-        # Between the nodes the quadratic surface may dip below zero.
+        # Between the nodes, quadratic interpolation may fall below zero.
         clim=(0.0, largest or 1.0),
         cmap="viridis",
         nan_color=PRESSED_COLOUR,

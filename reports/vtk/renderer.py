@@ -1,4 +1,4 @@
-"""Test of off-screen drawing by VTK, in another process, since VTK crashes where it cannot."""
+"""Test of off-screen drawing by VTK, in another process, since VTK crashes where it cannot draw."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ print(plotter.render_window.GetClassName())
 
 
 def renderer_problem() -> str | None:
-    """Return the reason why no pictures can be drawn, or None where they can.
+    """Return the reason why no pictures can be drawn; None if they can.
 
-    Keeps the renderer that works in this process's environment, so call it before drawing.
+    The name of the renderer that works is kept in the environment of this process, so call this
+    function before drawing.
     """
     problems = []
     for window in _candidates():
@@ -37,7 +38,7 @@ def renderer_problem() -> str | None:
 
 def _candidates() -> tuple[str, ...]:
     chosen = os.environ.get(WINDOW_VARIABLE, "")
-    # Without a display VTK's own choice complains about the X server before it falls back.
+    # Without a display, VTK's default prints errors about the X server before it falls back.
     display = sys.platform != "linux" or bool(os.environ.get("DISPLAY"))
     first = (chosen,) if chosen or display else ()
     return first + tuple(window for window in OFF_SCREEN_WINDOWS if window != chosen)
@@ -49,8 +50,8 @@ def _try(window: str) -> str | None:
         environment[WINDOW_VARIABLE] = window
     try:
         done = subprocess.run(
-            [sys.executable, "-P", "-c", PROBE_CODE],  # importing nothing from the current folder
-            cwd="/",  # nor taking settings from there, as matplotlib does
+            [sys.executable, "-P", "-c", PROBE_CODE],  # imports nothing from the current folder
+            cwd="/",  # and reads no settings there, as matplotlib would
             env=environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
@@ -66,6 +67,6 @@ def _try(window: str) -> str | None:
         return f"ends with signal {-done.returncode}"
     if done.returncode:
         return (done.stderr.strip().splitlines() or ["fails"])[-1]
-    # VTK falls back, with warnings, from a window it cannot make.
+    # VTK falls back, with warnings, if it cannot make a window of this kind.
     last_words = done.stdout.split()[-1:]
     return None if not window or last_words == [window] else "cannot be made"

@@ -1,6 +1,6 @@
-"""Reader of VTU files as reports.vtk.writer writes them, and of no others.
+"""Reader of VTU files that reports.vtk.writer wrote, and of no others.
 
-VTK's own reader trusts files, and crashes on what points beyond their end.
+VTK's own reader trusts files, and crashes on offsets beyond their end.
 """
 
 from __future__ import annotations
@@ -91,7 +91,9 @@ def _cells(reader: _Reader, count: int, points: int) -> tuple[str, NDArray[np.in
 
 
 class _Reader:
-    """The parts of the file that are used: attributes of the piece, arrays with their text."""
+    """The parts of the file that are used: the attributes of the piece, and arrays with
+    their text.
+    """
 
     def __init__(self) -> None:
         self._piece: dict[str, str] | None = None
@@ -123,7 +125,11 @@ class _Reader:
         return int(text)
 
     def array(self, part: str, name: str | None, count: int) -> NDArray[Any]:
-        """Return the array of a name, (count,) or (count, components)."""
+        """Return an array of a section by its name, (count,) or (count, components).
+
+        name: None for the first array.
+        Raises: ValueError if there is none.
+        """
         for attributes, texts in self._arrays[part]:
             if name is None or attributes.get("Name") == name:
                 return _decoded(attributes, "".join(texts), count)
@@ -167,9 +173,10 @@ def _decoded(attributes: Mapping[str, str], text: str, count: int) -> NDArray[An
 
 
 def _unpacked(text: str, size: int, shown: str) -> bytes:
-    """Return the blocks that zlib compressed.
+    """Return the blocks that zlib compressed, `size` bytes in total.
 
-    The sizes precede them; in base64 each part is encoded separately.
+    A header with the sizes precedes the blocks; in base64 header and blocks are encoded separately.
+    Raises: ValueError if the sizes do not match.
     """
     most = f"array {shown!r} is not {size:,} bytes long"
     blocks, block, last = _integers(text[: _coded(3)], 3, shown)
@@ -191,7 +198,7 @@ def _unpacked(text: str, size: int, shown: str) -> bytes:
 
 
 def _coded(numbers: int) -> int:
-    """Return the number of characters of a header of so many integers."""
+    """Return the number of base64 characters of a header of `numbers` integers."""
     return 4 * math.ceil(numbers * HEADER_TYPE.itemsize / 3)
 
 

@@ -1,4 +1,6 @@
-"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files over them."""
+"""Writer of meshes with data as VTU files, by VTK's own writer, and of XML files that
+combine them.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ Data = Mapping[str, "NDArray[Any] | Sequence[str]"]  # numbers, or texts
 class Block:
     """A mesh with data by name.
 
-    points: (N, 3). cells: (M, k). whole: data of the whole block. more: cells of other types.
+    points: (N, 3). cells: (M, k).
+    whole: data of the whole block.
+    more: cells of other types, by type.
     """
 
     points: Floats
@@ -46,8 +50,8 @@ def write_block(block: Block, path: Path) -> None:
 
     writer = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(grid(block))
-    writer.SetWriteToOutputString(True)  # VTK itself crashes where a disk is full
-    writer.SetDataModeToBinary()  # appended raw it would be a quarter less, but none for meshio
+    writer.SetWriteToOutputString(True)  # VTK itself would crash if the disk is full
+    writer.SetDataModeToBinary()  # appended raw data is a quarter smaller; meshio cannot read it
     writer.SetHeaderTypeToUInt64()
     writer.SetCompressorTypeToZLib()
     writer.SetCompressionLevel(1)
@@ -101,7 +105,7 @@ def _numbers(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def add_field_data(path: Path, data: Mapping[str, NDArray[np.float64]]) -> None:
-    """Add numbers for the whole to a VTU or VTM file of this module.
+    """Add numbers as field data of the whole to a VTU or VTM file of this module.
 
     Raises: OSError.
     """
@@ -133,7 +137,7 @@ def add_field_data(path: Path, data: Mapping[str, NDArray[np.float64]]) -> None:
 
 
 def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
-    """Write a VTM file of blocks, each with its name and its file in the same folder."""
+    """Write a VTM file. blocks: files in the same folder, by name."""
     lines = [
         f"    <DataSet index={quoteattr(str(i))} name={quoteattr(name)} file={quoteattr(file)}/>"
         for i, (name, file) in enumerate(blocks.items())
@@ -142,7 +146,7 @@ def write_multiblock(blocks: Mapping[str, str], path: Path) -> None:
 
 
 def write_series(parts: Sequence[tuple[float, str, str]], path: Path) -> None:
-    """Write a PVD file of parts, each with its time, name and file in the same folder."""
+    """Write a PVD file. parts: time, name and file (in the same folder) of each."""
     names = list(dict.fromkeys(name for _, name, _ in parts))
     lines = [
         f"    <DataSet timestep={quoteattr(repr(time))} part={quoteattr(str(names.index(name)))} "

@@ -11,11 +11,11 @@ from reports.format.numbers import (
     DASH,
     drawn,
     engineering,
-    like,
     margin_text,
     ratio,
     short,
     threshold,
+    with_decimals_of,
 )
 from tests.support.each import each
 
@@ -56,9 +56,12 @@ def test_short_keeps_what_was_given() -> None:
     assert [short(x) for x in (1.5, 100.0, 0.125, 2.0e7)] == ["1.5", "100", "0.125", "20×10⁶"]
 
 
-def test_like_takes_the_published_decimals() -> None:
-    assert (like(7.7781745, 7.78), like(11.04, 11.0)) == ("7.78", "11")
-    assert (like(1.26e-5, 1.2e-5), like(2.04e22, 2e22)[:2]) == ("0.000013", "20")
+def test_published_decimals_are_taken() -> None:
+    assert (with_decimals_of(7.7781745, 7.78), with_decimals_of(11.04, 11.0)) == ("7.78", "11")
+    assert (with_decimals_of(1.26e-5, 1.2e-5), with_decimals_of(2.04e22, 2e22)[:2]) == (
+        "0.000013",
+        "20",
+    )
 
 
 def test_one_of_a_thing_is_singular() -> None:

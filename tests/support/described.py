@@ -1,4 +1,4 @@
-"""What `pinstress check` tells of a study."""
+"""The output of `pinstress check` on a study."""
 
 from __future__ import annotations
 

@@ -16,10 +16,10 @@ Test = Callable[..., None]
 
 
 def sampled(cases: Iterable[Any], every: int, first: int = 0) -> list[Any]:
-    """Cases for `pytest.mark.parametrize`, of which CI runs one in so many; the others are marked
-    `long` and run in `make test-all` only.
+    """Return cases for `pytest.mark.parametrize`, of which CI runs one in `every`; the others are
+    marked `long` and run in `make test-all` only.
 
-    first: the number of the first that CI runs
+    first: the number of the first case that CI runs
     """
     return [
         case
@@ -30,8 +30,11 @@ def sampled(cases: Iterable[Any], every: int, first: int = 0) -> list[Any]:
 
 
 def in_turn(name: str, cases: Sequence[Any]) -> Callable[[Test], Test]:
-    """A decorator for many tests of the same cases, of which CI runs one case a test: the next one
-    in each test, so that it runs every case in some of them; the others are marked `long`.
+    """Return a decorator for several tests of the same cases, of which CI runs one case in each
+    test.
+
+    Each test takes the next case, so that CI runs every case in one of the tests or another; the
+    others are marked `long`.
     """
     turn = itertools.count()
 
@@ -46,9 +49,10 @@ def in_turn(name: str, cases: Sequence[Any]) -> Callable[[Test], Test]:
 def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], Test]:
     """Run a test once for every case, as one collected test that reports all failures together.
 
-    For cases that take milliseconds: collecting, scheduling and reporting a thousand tests takes
-    longer than they do. Takes the arguments of `pytest.mark.parametrize` and stacks like it.
-    `tmp_path`, `monkeypatch` and `capsys` are as new for each case; other fixtures are shared.
+    This is for cases that take milliseconds: collecting, scheduling and reporting a thousand tests
+    takes longer than running them. It takes the arguments of `pytest.mark.parametrize` and stacks
+    like it. `tmp_path`, `monkeypatch` and `capsys` are made anew for each case; other fixtures are
+    shared.
 
     names: arguments of the test, one or several
     cases: a value for one name, a tuple of values for several
@@ -88,7 +92,7 @@ def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], T
 
 @contextmanager
 def _fresh(fixtures: dict[str, Any], number: int) -> Iterator[dict[str, Any]]:
-    """Fixtures of a test for one of its cases."""
+    """Yield the fixtures of a test for one of its cases."""
     own = dict(fixtures)
     if "tmp_path" in own:
         own["tmp_path"] = fixtures["tmp_path"] / str(number)

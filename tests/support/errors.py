@@ -1,4 +1,4 @@
-"""Errors by their code and what they name, not by their wording."""
+"""Check errors by their code and by the names in their message, not by its wording."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ E = TypeVar("E", bound=Exception)
 
 @contextmanager
 def raises(kind: type[E], code: str, *named: str) -> Iterator[pytest.ExceptionInfo[E]]:
-    """An error of this kind with this code, whose message names all of these."""
+    """Assert that the block raises an error of this kind with this code, whose message contains all
+    of `named`.
+    """
     with pytest.raises(kind) as caught:
         yield caught
     codes = getattr(caught.value, "codes", None) or (getattr(caught.value, "code", None),)

@@ -1,4 +1,4 @@
-"""JSON Schema as editors read it: the keywords that the schema of the study file has."""
+"""A validator of JSON Schema for the keywords that the schema of the study file uses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PASSED = {
 
 
 def mistakes(value: Any, schema: dict[str, Any], whole: dict[str, Any], at: str = "") -> list[str]:
-    """The places at which a value is not as its schema says.
+    """Return the places at which a value does not conform to its schema, with what each violates.
 
     whole: the schema with the definitions.
     """

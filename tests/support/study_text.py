@@ -1,4 +1,4 @@
-"""Texts of studies, changed and written."""
+"""Texts of studies, edited and written to files."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def edited(text: str, changes: Iterable[tuple[str, str]]) -> str:
-    """The text with others in it, each instead of one that it has."""
+    """Return the text with replacements, each of a passage that it contains."""
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
@@ -15,7 +15,7 @@ def edited(text: str, changes: Iterable[tuple[str, str]]) -> str:
 
 
 def edited_once(text: str, changes: Iterable[tuple[str, str]]) -> str:
-    """The same, each instead of one that it has once."""
+    """Return the text with replacements, each of a passage that it contains exactly once."""
     for old, new in changes:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
@@ -23,7 +23,7 @@ def edited_once(text: str, changes: Iterable[tuple[str, str]]) -> str:
 
 
 def study_file(folder: Path, text: str) -> Path:
-    """The path of a study of this text in a folder."""
+    """Write a study of this text in a folder, and return its path."""
     path = folder / "study.toml"
     path.write_text(text, encoding="utf-8")
     return path

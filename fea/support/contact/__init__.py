@@ -1,1 +1,1 @@
-"""Pins in contact with their lugs: pressures, their error, loads on the pin."""
+"""The contact of a pin with its lugs: pressures, their error, and loads on the pin."""

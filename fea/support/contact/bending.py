@@ -13,9 +13,10 @@ from fea.support.lugs.lug import Lug
 from fea.support.records import JointForces
 from geometry import Pin
 
-Parts = tuple[Floats, Floats]  # (Z, R): of loads per length that are even, and that rise
-STATION_COUNT = 61  # along the pin, besides the ends of rings and segments
-SAME_FORCE = 1e-6  # of a lug's force: what contact is solved to
+# Forces or moments (Z, R) by loads per length that are constant and that are linear along a piece.
+Parts = tuple[Floats, Floats]
+STATION_COUNT = 61  # along the pin, in addition to the ends of rings and segments
+SAME_FORCE = 1e-6  # relative accuracy to which contact gives the force on a lug
 
 
 def stations(pin: Pin) -> Floats:
@@ -27,10 +28,11 @@ def stations(pin: Pin) -> Floats:
 class LoadedJoint:
     """A pin in its lugs under the loads of a case.
 
-    pin: with its bands cut into rings. lugs: one for each of the bands.
-    loads: first those on the rings of `bands`, in their order; forces are even along a ring,
-    moments make loads that are linear along it.
-    mass: of the pin's segments, (S,) kg/m.
+    pin: with its bands cut into rings.
+    lugs: one for each of the bands.
+    loads: on the rings of `bands`, in their order, then on other surfaces. A force is a uniform
+    load along its ring, a moment a load that is linear along its ring.
+    mass: mass per length of the pin's segments, (S,) kg/m.
     """
 
     pin: Pin
@@ -41,21 +43,21 @@ class LoadedJoint:
 
     @property
     def line_load(self) -> Floats:
-        """The force per length of the lugs on the pin along x and y, the mean over each ring, (T,
-        R, 2) N/m.
+        """The mean force per length of the lugs on the pin over each ring, along x and y, (T, R, 2)
+        N/m.
         """
         forces = self.loads.forces[:, : len(self.bands.z), :2]
         return np.asarray(forces / self.bands.length[:, None])
 
     def bending_moment(self, z: Floats) -> Floats:
-        """The bending moment of the part of the pin before z (Z,) m, (T, Z, 2) N m.
+        """The bending moment at z (Z,) m by the loads before z, (T, Z, 2) N m.
 
-        It is the integral of the shear along x and along y.
+        The two components are the integrals of the shear along x and along y.
         """
         return self._summed(z, _moments)
 
     def shear_force(self, z: Floats) -> Floats:
-        """The shear force, (T, Z, 2) N: the sum of the transverse loads on the pin before z."""
+        """The shear force at z (Z,) m, (T, Z, 2) N: the sum of the transverse loads before z."""
         return self._summed(z, _forces)
 
     def section_forces(self) -> JointForces:
@@ -70,7 +72,7 @@ class LoadedJoint:
         return JointForces(z, self.loads.times, shear, moment, names, forces, pull, torque)
 
     def along(self, z: Floats) -> tuple[Floats, Floats]:
-        """The axial force (T, Z) N and the torque (T, Z) N m before z (Z,) m."""
+        """The sums of axial loads, (T, Z) N, and of torques, (T, Z) N m, before z (Z,) m."""
         on = [self.pin.band(name) for name in self.loads.surfaces]
         middle, length = np.array([(band.middle, band.length) for band in on]).T
         part = np.clip((z[:, None] - middle) / length + 0.5, 0.0, 1.0)
@@ -104,15 +106,19 @@ class LoadedJoint:
 
 
 def growth_across(varied: LoadedJoint, own: LoadedJoint) -> float:
-    """The largest shear force or moment across a pin over that of another joint, whichever grows
-    more.
+    """The growth of the largest shear force or of the largest bending moment, relative to another
+    joint, whichever is larger.
+
+    own: the joint to compare with.
     """
     return float(_ratios(varied.largest_across(), own.largest_across()).max())
 
 
 def growth_of_lugs(varied: LoadedJoint, own: LoadedJoint) -> tuple[tuple[str, float], ...]:
-    """The largest force on each lug over that of another joint, of those that grow: these share
-    what statics does not decide.
+    """The growth of the largest force on each lug, relative to another joint, for the lugs whose
+    force grows.
+
+    The force on a lug can grow only where statics does not determine it.
     """
     ratios = _ratios(varied.largest_of_lugs(), own.largest_of_lugs()).tolist()
     pairs = zip(own.lugs, ratios, strict=True)
@@ -120,16 +126,16 @@ def growth_of_lugs(varied: LoadedJoint, own: LoadedJoint) -> tuple[tuple[str, fl
 
 
 def _ratios(now: Floats, before: Floats) -> Floats:
-    """Largest values over those before, 1 where there were none."""
+    """The ratios of values to those before; 1 where the value before was zero."""
     return np.divide(now, before, out=np.ones_like(now), where=before > 0.0)
 
 
 def _moments(way: Floats, lengths: Floats) -> Parts:
-    """Moments of pieces under a unit load per length and under its unit slope.
+    """The moments at z of pieces under a unit load per length, and under a load of unit slope.
 
-    way: distances from their starts to z, (Z, R).
+    way: distances from the starts of the pieces to z, (Z, R) m.
     """
-    reach = np.clip(way, 0.0, lengths)  # of each piece that is before z
+    reach = np.clip(way, 0.0, lengths)  # length of each piece that lies before z
     even = reach * (way - reach / 2.0)
     return even, reach**2 * (way / 2.0 - reach / 3.0) - even * lengths / 2.0
 
@@ -140,9 +146,9 @@ def _forces(way: Floats, lengths: Floats) -> Parts:
 
 
 def mass_per_length(pin: Pin, density: float | None) -> Floats:
-    """The mass per length of the segments, (S,) kg/m, 0 without density.
+    """The mass per length of the segments, (S,) kg/m; zero without a density.
 
-    The extra mass of fillets is spread in proportion.
+    The extra mass of fillets is distributed over all segments in proportion to their mass.
     """
     area = np.array([s.mean_area for s in pin.segments])
     whole = (density or 0.0) * pin.volume

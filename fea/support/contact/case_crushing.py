@@ -1,12 +1,13 @@
-"""Crushing of a hardened case: the stress in the core beneath the pressure of lugs alone.
+"""Case crushing: the stress in the core of a hardened pin, by the pressure of lugs alone.
 
-Pressure is carried through the case to the core, whose largest stress under a narrow contact is not
-at its boundary with the case but as deep as under a line contact: von Mises 0.56 p0 at 0.70 of the
-half width for nu = 0.3. At depths that are small against the radius a ring of pressure acts as on a
-half-plane in plane strain, whose stresses under a strip of uniform pressure are known in closed
-form. Strips as narrow as a part of the depth make up the pressure of the cells, linear between
-their middles. Bending and shear of the pin, which sections have, are not in it, nor the edges of
-lugs: of these the outermost pressed rings are left out, as everywhere.
+The case passes the pressure on to the core. Under a narrow contact the largest stress in the core
+is not at the boundary with the case but as deep as under a line contact: von Mises 0.56 p0 at 0.70
+of the half width for nu = 0.3. At depths that are small compared with the radius, a ring of
+pressure acts as on a half-plane in plane strain, whose stresses under a strip of uniform pressure
+are known in closed form. The pressure of the cells, linear between their middles, is made of strips
+that are narrow compared with the depth. Bending and shear of the pin, which sections include, are
+left out. The edges of lugs are left out, too: the outermost pressed rings do not count, as
+elsewhere.
 
 Source: K. L. Johnson, Contact Mechanics (1985), 2.5 (a) for the strip, 4.2 for the line contact.
 """
@@ -23,17 +24,20 @@ from fea.core.places import CaseCrushing
 from fea.support.contact.joint_contact import JointContact
 from pinbase.arrays import Floats, Ints
 
-STRIPS_PER_DEPTH = 4.0  # strips in a length as long as the case is deep
-MAX_STRIPS = 4096  # round the pin
-DEPTH_STEP = 1.1  # ratio of two depths
-MAX_DEPTH = 0.5  # of the radius: deeper, a pin is no half-plane
+STRIPS_PER_DEPTH = 4.0  # strips in a length equal to the case depth
+MAX_STRIPS = 4096  # around the pin
+DEPTH_STEP = 1.1  # ratio of successive depths
+MAX_DEPTH = 0.5  # of the radius: deeper, the pin does not act as a half-plane
 
 
 def case_crushing(
     contacts: Iterable[JointContact], hardened: tuple[Hardened, ...], nu: float
 ) -> CaseCrushing | None:
-    """The largest use of the core's strength beneath pressures, each of one instant; None where no
-    pressed ring is on a hardened stretch. nu: Poisson's ratio.
+    """The case crushing with the largest ratio of stress to core strength; None where no pressed
+    ring is on a hardened stretch.
+
+    contacts: each at one instant.
+    nu: Poisson's ratio.
     """
     crushed = [
         crushing
@@ -47,7 +51,9 @@ def case_crushing(
 
 
 def _rings(contact: JointContact) -> Ints:
-    """The numbers of the pressed rings away from the edges of lugs; all if there are no others."""
+    """The numbers of the pressed rings away from the edges of lugs; of all pressed rings if none is
+    away from edges.
+    """
     (state,) = contact.contact
     pressed = (state.pressure > 0.0).any(axis=1)
     arcs = contact.loads.pressed
@@ -78,14 +84,14 @@ def _of_ring(contact: JointContact, ring: int, case: Hardened, nu: float) -> Cas
 def beneath_strips(pressure: Floats, width: float, depths: Floats, nu: float) -> Floats:
     """The largest von Mises stress (D,), Pa, at depths (D,), m, beneath strips of uniform pressure.
 
-    pressure: (N,) Pa of strips side by side that repeat after the last.
-    width: of each, m.
+    pressure: on adjacent strips around the pin, (N,) Pa; the first strip follows the last.
+    width: of each strip, m.
     """
     count = len(pressure)
     away = (np.arange(count) + count // 2) % count - count // 2
     waves, out = np.fft.rfft(pressure), np.empty(len(depths))
     for k, depth in enumerate(depths):
-        # Angles from the ends of a strip to the point beneath, and Johnson's (2.31).
+        # Angles from the ends of a strip to the point beneath, for Johnson's eq. (2.31).
         first, second = (np.arctan2(depth, width * (away + end)) for end in (-0.5, 0.5))
         angle, sine = 2.0 * (first - second), np.sin(2.0 * first) - np.sin(2.0 * second)
         cosine = np.cos(2.0 * first) - np.cos(2.0 * second)
@@ -100,5 +106,5 @@ def beneath_strips(pressure: Floats, width: float, depths: Floats, nu: float) ->
 
 
 def pressed_most(forces: Floats) -> Ints:
-    """The instants at which the force on some lug is largest. forces: of the lugs, (T, L, 2) N."""
+    """The instants at which some lug has its largest force. forces: of the lugs, (T, L, 2) N."""
     return np.unique(np.linalg.norm(forces, axis=2).argmax(axis=0))

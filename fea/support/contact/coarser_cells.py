@@ -1,4 +1,4 @@
-"""The same contact on cells twice as large, from which the error of the cells follows."""
+"""The contact problem on cells twice as large, to estimate the error of the cells."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pinbase.arrays import Ints
 def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
     """The contact problem with pairs of rings merged and half the sectors.
 
-    The second value, (R, C), is 1 where a ring belongs to a coarse one, else 0.
+    The second value, (R, C), is 1 where a ring belongs to a coarse ring, else 0.
     """
-    # Rings that are merged have one pressure and the mean displacement: the coarse flexibility
+    # Merged rings have one pressure and their mean displacement. The coarse flexibility therefore
     # follows from the fine one by sums and means, and nothing is meshed again.
     fine = model.contact
     group = _pairs(model)
@@ -32,19 +32,19 @@ def on_coarser_cells(model: ContactModel) -> tuple[ContactProblem, Floats]:
         mean.T @ fine.bands.gap,
         fine.bands.link,
     )
-    # Half the sectors resolve half the harmonics; those above are the half-plane's, as on fine
-    # cells.
+    # Half the sectors resolve half the harmonics. Higher harmonics are those of the half-plane, as
+    # on the fine cells.
     sectors = model.cells.sectors // 2
     coarse = mean.T @ model.flexibility[: COUPLED_HARMONICS_PER_SECTOR * sectors] @ belongs
     return model.problem(bands, coarse, model.tail[first], sectors, belongs), belongs
 
 
 def _pairs(model: ContactModel) -> Ints:
-    """The numbers (R,) of the coarse rings, each of two rings of a band.
+    """The number of the coarse ring to which each ring belongs, (R,).
 
-    No pair has a flat and a rounded ring: their common gap would keep light loads off the flat
-    part. A ring that is left over is alone at the face of the lug, or the third of the last flat
-    ones.
+    Coarse rings are pairs of rings of a band. No pair has a flat and a rounded ring, since their
+    common gap would keep light loads off the flat part. An odd ring under a rounding stays alone at
+    the face of the lug; an odd flat ring makes the last flat group one of three.
     """
     out: list[int] = []
     for _, lug, ends in model.by_lug():

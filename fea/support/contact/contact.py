@@ -1,19 +1,20 @@
-"""Frictionless contact of a pin with its lugs, on cells: rings of the bands times sectors.
+"""Frictionless contact of a pin with its lugs on cells, which are rings of the bands times sectors.
 
-With pressure p >= 0 on the cells, the gap to the bore is, on the average of a cell,
+With pressure p >= 0 on the cells, the mean gap between pin and bore over a cell is
 
     g = clearance / 2 + edge rounding + C p + (shift of the lug + z turn of the pin) . e_r >= 0
 
-and p g = 0. C is the flexibility of pin and lugs together, harmonic by harmonic, the half-plane's
-beyond, under pressures that are even on every cell, and averaged over cells, so that it is
-symmetric. A lug whose tilt is elastic adds the tilt that the pressures' couple makes. Shifts and
-turn are the multipliers of what equilibrium asks: the resultant on the bands of a link is its
-force, and the couples on the pin are in balance. It is a linear complementarity problem with a
-positive definite matrix; a primal-dual active set solves it in few steps. Where it runs in circles,
-as it may where hardly more cells touch than hold the pin, descent of the energy finds the cells
-(fea.support.contact.least_energy). As long as the same cells are in contact everything is linear in
-the loads: what a set of cells answers is found once and kept, so that neighbouring instants take
-next to nothing.
+and p g = 0. C is the flexibility of pin and lugs together under pressures that are uniform on each
+cell. It is computed harmonic by harmonic, with that of a half-plane for the highest harmonics, and
+averaged over cells, so that it is symmetric. A lug whose tilt is elastic adds the tilt that the
+couple of the pressures causes. Shifts and turn are the Lagrange multipliers of equilibrium: the
+resultant on the bands of a link is the link's force, and the couples on the pin are in balance.
+
+This is a linear complementarity problem with a positive definite matrix. A primal-dual active set
+solves it in few steps. The active set may cycle where barely more cells touch than are needed to
+hold the pin; then a descent of the energy finds the cells (fea.support.contact.least_energy). As
+long as the same cells are in contact, everything is linear in the loads. The response of each set
+of cells is therefore computed once and kept, so that neighbouring instants cost almost nothing.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
 Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).
@@ -43,34 +44,36 @@ from pinbase.arrays import Mask
 # Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
 # found; the contact itself is unique.
 MAX_ACTIVE_SET_STEPS = 30
-# Of the loads: force of the first springs when they give as much as the largest gap. Their
-# softening where they pass on too little. Of 400 random light loads in loose lugs none took more
-# than five rounds.
+# Springs hold the pin during the descent. SPRING_FORCE is the force of the first springs, relative
+# to the loads, when they stretch by the largest gap and the elastic displacement. SPRING_SOFTENING
+# is the factor on their stiffness where they have passed on too little of the loads. Of 400 random
+# light loads in loose lugs none took more than five rounds.
 SPRING_FORCE, SPRING_SOFTENING, MAX_SPRING_ROUNDS = 1e-3, 1e-3, 30
-# Of required resultants and rigid motions, which come in pairs along x and y.
+# The x and y parts of required resultants and rigid motions, which come in pairs.
 ALONG_X, ALONG_Y = slice(0, None, 2), slice(1, None, 2)
 # Round-off of double precision, with a margin chosen by judgement.
 BALANCE_TOLERANCE = 1e-9  # of the largest force
 CLOSING_FORCE_ROUND_OFF = 1e-12  # of the forces that would close the gaps
 SIGN_TOLERANCE = 1e-12  # of the largest pressure or gap: a wrong sign below it is round-off
-# Of the stiffness of the cells: holds a lug that has lost all contact, and is far too soft to
-# change that of a lug in contact.
+# A spring, relative to the stiffness of the cells, that holds a lug which has lost all contact. It
+# is far too soft to change the contact of any other lug.
 SOFT_SPRING_STIFFNESS = 1e-13
-# Numbers kept of the responses of sets of cells, counted by one value of each cell and motion.
+# Responses of sets of cells that are kept, counted as one number for each cell and motion.
 MAX_KEPT_NUMBERS = 4_000_000
-MAX_KEPT_STATES = 64  # of loads: those of single instants are requested repeatedly
+MAX_KEPT_STATES = 64  # solved states that are kept: single instants are requested repeatedly
 
 
 class ContactProblem:
-    """One pin in its lugs, ready for any loads.
+    """The contact problem of one pin in its lugs, ready for any loads.
 
-    flexibility: (N + 1, R, R) m/Pa by harmonic, of pin and lugs together, on means over rings.
-    tail: n u_n / p_n of both together for higher harmonics, m/Pa, (R,).
-    tilt: (B,) N m/rad, stiffness of the lugs' tilt, inf where guided, 0 where free.
-    sectors: M, of equal angles, the first about x.
-    besides: (U, U) m/N, further displacement of cells under forces on cells, of a body that is not
-    alike in all directions.
-    gone: (U,) the cells that are not there.
+    flexibility: mean displacements of rings, by harmonic, pin and lugs together, (N + 1, R, R)
+    m/Pa.
+    tail: n u_n / p_n of pin and lugs together for higher harmonics, (R,) m/Pa.
+    tilt: tilt stiffness of the lugs, (B,) N m/rad; inf where guided, 0 where free.
+    sectors: number M of equal sectors; the first is centred on x.
+    added: displacement of cells under forces on cells that a body without rotational symmetry
+    adds, (U, U) m/N.
+    removed: mask (U,) of the cells that cuts have removed.
     """
 
     def __init__(
@@ -80,17 +83,17 @@ class ContactProblem:
         tail: Floats,
         tilt: Sequence[float],
         sectors: int,
-        besides: Floats | None = None,
-        gone: Mask | None = None,
+        added: Floats | None = None,
+        removed: Mask | None = None,
     ) -> None:
         self.bands, self.sectors, self._cells = bands, sectors, Sectors(sectors)
         self._count = int(bands.links.max()) + 1
         self._tail = float(np.max(tail))
         area = self.cells_area(bands)
-        self._elastic = CellFlexibility(flexibility, tail, area[::sectors], sectors, besides)
+        self._elastic = CellFlexibility(flexibility, tail, area[::sectors], sectors, added)
         # A gap as wide as the pin never closes.
-        self._beyond = 0.0 if gone is None else gone * bands.radius.max()
-        self._even = besides is None and gone is None
+        self._removed_gap = 0.0 if removed is None else removed * bands.radius.max()
+        self._even = added is None and removed is None
         self._fit(bands, tilt)
 
     @property
@@ -99,7 +102,7 @@ class ContactProblem:
         return self._cells.angles
 
     def cells_area(self, bands: Bands) -> Floats:
-        """The areas of all cells of bands with as many rings, (U,) m^2."""
+        """The areas of all cells, (U,) m^2, on bands with as many rings as this problem has."""
         of_ring = bands.length * bands.radius * 2.0 * np.pi / self.sectors
         return np.outer(of_ring, self._cells.sizes).ravel()
 
@@ -110,7 +113,7 @@ class ContactProblem:
         return other
 
     def freed(self, bands: Mask) -> ContactProblem:
-        """The same problem with some of the lugs (B,) free to tilt, kept for further loads."""
+        """The same problem with the lugs of a mask (B,) free to tilt, kept for later loads."""
         key = bands.tobytes()
         if not bands.any():
             return self
@@ -121,7 +124,7 @@ class ContactProblem:
 
     @cached_property
     def mirrored(self) -> ContactProblem:
-        """The same problem under loads along x, whose contact is mirrored about x."""
+        """The same problem for loads in the plane of x and the axis, where contact is symmetric."""
         other = copy.copy(self)
         other._cells = Sectors(self.sectors, mirrored=True)
         other._fit(self.bands, self.tilt)
@@ -133,7 +136,7 @@ class ContactProblem:
         self.area = self.cells_area(bands)
         self._e_r = np.tile(self._cells.normals, (len(bands.z), 1))  # (U, 2)
         self._link = np.repeat(bands.links[bands.band], len(self._cells))
-        self._open = np.repeat(bands.gap, len(self._cells)) + self._beyond
+        self._open = np.repeat(bands.gap, len(self._cells)) + self._removed_gap
         self._motions, self._tilts = self.rigid(bands, tilt)
         largest = np.abs(self._motions).max(axis=0)  # a turn counts as the shift at the far end
         self._reach = np.where(largest > 0.0, largest, 1.0)
@@ -144,28 +147,28 @@ class ContactProblem:
 
     @cached_property
     def _compliance(self) -> Floats:
-        """The mean displacements (U, U) of the cells under forces on them, m/N."""
+        """The mean displacements of the cells under forces on the cells, (U, U) m/N."""
         fixed = self._elastic.of(self._cells)
         return fixed + self._tilts @ self._tilts.T if self._tilts.size else fixed
 
     @property
     def _softest(self) -> float:
-        """The largest compliance, m/N: of a positive definite matrix it is on the diagonal."""
+        """The largest compliance, m/N; of a positive definite matrix it is on the diagonal."""
         return float(self._compliance.diagonal().max())
 
     @property
     def closed(self) -> bool:
-        """Whether pin and bores fit everywhere before any load."""
+        """Whether the gap is zero everywhere before loading."""
         return not self.bands.gap.any()
 
     def rigid(self, bands: Bands, tilt: Sequence[float]) -> tuple[Floats, Floats]:
-        """Changes of the gap by the motions of lugs and pin, on bands with as many rings.
+        """The changes of the gap by rigid motions, on bands with as many rings as this problem has.
 
-        The first value, (U, Y), is that of motions without stiffness: shifts of the lugs, turn of
-        the pin, tilts of the free lugs. The second, (U, S), is that of sprung tilts over the root
-        of their stiffness, so that its product with itself is their compliance.
+        The first array, (U, Y), is for motions without stiffness: shifts of the lugs, turn of the
+        pin, tilts of free lugs. The second, (U, S), is for elastic tilts, each divided by the root
+        of its stiffness, so that the array times its transpose is the compliance of the tilts.
         """
-        # Mirrored about x, nothing moves along y.
+        # With symmetry about x, nothing moves along y.
         e_r = self._e_r[:, :1] if self._cells.mirrored else self._e_r
         columns = [e_r * (self._link == k)[:, None] for k in range(self._count)]
         band, z = (np.repeat(x, len(self._cells)) for x in (bands.band, bands.z))
@@ -187,13 +190,14 @@ class ContactProblem:
         start: Mask | None = None,
         moments: Floats | None = None,
     ) -> ContactState:
-        """The contact under forces (L, 2), N, of the links on the pin, along x and y.
+        """Return the contact under forces of the links.
 
-        couple: N m, along x and y, on the pin by anything but the lugs.
-        start: cells (R, M) in contact at a neighbouring instant.
-        moments: (B, 2) N m, along x and y, of the lugs that are free to tilt, on the pin.
+        forces: on the pin, along x and y, (L, 2) N.
+        couple: on the pin along x and y, by everything but the lugs, N m.
+        start: mask (R, M) of the cells in contact at a neighbouring instant.
+        moments: on the pin along x and y, by the lugs that are free to tilt, (B, 2) N m.
 
-        Raises: SolveError where the active set does not settle.
+        Raises: SolveError where no cells in contact are found, or no contact can react the loads.
         """
         forces = np.asarray(forces, dtype=np.float64)
         required = self.required_resultants(forces, couple, moments)
@@ -213,14 +217,12 @@ class ContactProblem:
         return state
 
     def _along_x(self, required: Floats) -> bool:
-        """Whether required resultants lie in the plane of x and the pin's axis."""
+        """Whether the required resultants lie in the plane of x and the pin's axis."""
         size = np.abs(required) / self._reach
         return bool(size[ALONG_Y].max() <= BALANCE_TOLERANCE * size.max())
 
     def _settled(self, required: Floats, active: Mask) -> ContactState | None:
-        """The contact found from a first set of cells in contact; None where the sets do not
-        settle.
-        """
+        """Return the contact that the active set finds from a guess; None if it does not settle."""
         # Each step solves the linear contact of the guessed cells, then corrects the guess: cells
         # in tension open, cells that penetrate close. This is a semismooth Newton method
         # (Hintermueller et al.), which needs few steps even from a poor guess.
@@ -231,26 +233,26 @@ class ContactProblem:
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
             if not (wrong_force | wrong_gap).any():
-                # Cells that press nowhere near enough, as in one of two free lugs, are no contact.
+                # Forces that miss the required resultants, as in one of two free lugs, are none.
                 balanced = self._balances(force, required, answer)
                 return self._state(force, gap, motion, step) if balanced else None
             if (key := active.tobytes()) in seen:
                 return None  # a cycle
             seen.add(key)
-            active = (active & ~wrong_force) | self._chosen(gap, wrong_gap, active)
+            active = (active & ~wrong_force) | self._cells_to_close(gap, wrong_gap, active)
         return None
 
-    def _chosen(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
-        """A mask of the cells to close at once, of those that overlap."""
-        # Where fewer cells touch than hold the pin, it turns far and most of the others
-        # penetrate: only the deepest of each band is then near to those that will touch.
+    def _cells_to_close(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
+        """A mask of the overlapping cells to close in the next step."""
+        # Where fewer cells touch than are needed to hold the pin, the pin turns far and most other
+        # cells overlap. Only the deepest cell of each band is then near those that will touch.
         loose = overlaps & (self._open > 0.0)
         if np.count_nonzero(loose) <= np.count_nonzero(active):
             return overlaps
         return np.asarray((overlaps & ~loose) | self._deepest(gap, loose))
 
     def _deepest(self, gap: Floats, among: Mask) -> Mask:
-        """A mask of the cell of least gap of each band, among some."""
+        """A mask of the cell with the smallest gap in each band, among the given cells."""
         out, rings = np.zeros_like(among), len(self.bands.z)
         shallow = np.where(among, gap, np.inf).reshape(rings, -1)
         for band in range(int(self.bands.band.max()) + 1):
@@ -261,23 +263,24 @@ class ContactProblem:
         return out & among
 
     def _by_energy(self, required: Floats, first: Mask) -> ContactState | None:
-        """The contact found by descent of the energy, which finds every contact that exists; None
-        where round-off hides it.
+        """Return the contact that descent of the energy finds; None where round-off hides it.
 
-        first: cells with which to begin.
+        Descent finds every contact that exists. first: mask of the cells in contact at the start.
+
+        Raises: SolveError where no forces of the cells have the required resultants.
         """
         size = float(np.abs(required / self._reach).max())
         require_forces((self._motions / self._reach).T, required / self._reach / (size or 1.0))
-        # The descent holds the pin by springs, whose far ends move by the loads: by all that the
-        # springs have not passed on, until they have passed on everything (the method of
-        # multipliers). Small parts of the loads need softer springs to get as far as the gaps.
+        # Springs hold the pin and the lugs. They first pull with the loads; each round adds the
+        # part of the loads that has not reached the cells, until nothing is missing (the method of
+        # multipliers). Small parts need softer springs, so that the pin moves across the gaps.
         give = float(np.abs(self.bands.gap).max()) + size * self._softest
         spring, pull, missing = SPRING_FORCE * (size or 1.0) / give, required, required
         force = np.maximum(self._answer(first).on_springs(pull, spring)[0], 0.0)
         for _ in range(MAX_SPRING_ROUNDS):
             least = partial(self._on_springs, pull=pull, spring=spring)
             energy = partial(self._energy, pull=pull, spring=spring)
-            cells, force = least_energy_cells(force, least, energy, self._chosen)
+            cells, force = least_energy_cells(force, least, energy, self._cells_to_close)
             if (state := self._settled(required, cells)) is not None:
                 return state
             before, missing = missing, required - self._motions.T @ force
@@ -292,7 +295,7 @@ class ContactProblem:
         return self._answer(active).on_springs(pull, spring)
 
     def _energy(self, force: Floats, pull: Floats, spring: float) -> float:
-        """The energy, N m, of forces (U,) on springs, N/m, which is least where these press."""
+        """The energy, N m, of cell forces (U,), N, with springs, N/m; it is least in contact."""
         rows = np.flatnonzero(force)
         some = force[rows]
         stretched = (self._motions[rows].T @ some - pull) / self._reach
@@ -300,7 +303,7 @@ class ContactProblem:
         return elastic + float(self._open[rows] @ some + 0.5 * stretched @ stretched / spring)
 
     def _answer(self, active: Mask) -> Answer:
-        """The response of given cells in contact, kept for later instants."""
+        """The response of given cells in contact; it is kept for later instants."""
         key = np.packbits(active).tobytes()
         if key not in self._answers:
             if len(self._answers) * self._motions.size > MAX_KEPT_NUMBERS:
@@ -310,7 +313,7 @@ class ContactProblem:
 
     def _compute_answer(self, active: Mask) -> Answer:
         # On the cells in contact the gap is zero: C p = -open - G y. One factorisation of C serves
-        # the initial gaps and every rigid motion y, which are then the only unknowns left.
+        # the initial gaps and every rigid motion. The motions y are then the only unknowns left.
         C, G = self._compliance, self._motions
         rows = np.flatnonzero(active)
         force, yielding = np.zeros(len(active)), np.zeros(G.shape)
@@ -331,10 +334,8 @@ class ContactProblem:
         couple: tuple[float, float] = (0.0, 0.0),
         moments: Floats | None = None,
     ) -> Floats:
-        """The resultants (Y,) that the cells' forces must have on the rigid motions.
-
-        Their sign is negative since the cells push the pin against e_r.
-        moments: of the lugs that are free to tilt, as of `solve`.
+        """The resultants (Y,) that the cells' forces must have, by rigid motion, under the loads of
+        `solve`. The links' forces change sign, since the cells push the pin against e_r.
         """
         mx, my = couple  # x: by forces along -y at z, y: by forces along x at z
         free = np.array(self.tilt) == 0.0
@@ -346,10 +347,9 @@ class ContactProblem:
     def _balances(self, force: Floats, required: Floats, answer: Answer) -> bool:
         """Whether the cells' forces have the required resultants.
 
-        Raises: SolveError where round-off hides it.
+        Raises: SolveError where round-off hides whether they do.
         """
-        # A couple counts as the force at the far end that makes it, so that all residuals are
-        # forces.
+        # A couple counts as a force on the longest lever arm, so that all residuals are forces.
         residual = np.abs(self._motions.T @ force - required) / self._reach
         lost = residual.max(initial=0.0)
         if lost <= BALANCE_TOLERANCE * np.abs(required).max(initial=force.max(initial=0.0)):
@@ -362,14 +362,14 @@ class ContactProblem:
         return False
 
     def adjoint(self, active: Mask, wanted: Floats, required: Floats) -> AdjointContact:
-        """The sensitivity of a sum of the cells' forces, weighted by `wanted` (U,), to gaps and
-        loads.
+        """The sensitivity of a weighted sum of the cells' forces to gaps and loads.
 
-        active: the cells (R, M) in contact.
-        required: the required resultants of the rigid motions.
+        active: mask (R, M) of the cells in contact.
+        wanted: weights of the forces in the sum, (U,).
+        required: required resultants of the rigid motions, (Y,).
         """
         # The problem is symmetric: the adjoint is the same contact with `wanted` as its right-hand
-        # side and no resultants.
+        # side and zero resultants.
         rows = np.flatnonzero(active)
         answer = self._answer(active.ravel())
         force, _, motion = answer.under(required)
@@ -377,13 +377,13 @@ class ContactProblem:
         dual = np.zeros(len(force))
         dual[rows] = cho_solve(cho_factor(C, lower=True, check_finite=False), wanted[rows])
         of_motion, lost = np.zeros(len(required)), G.T @ dual[rows]
-        for _ in range(2):  # once more for round-off, as contact itself
+        for _ in range(2):  # the second pass removes round-off, as in Answer.under
             of_motion += answer.motion(lost)
             lost = G.T @ (dual[rows] - answer.yielding[rows] @ of_motion)
         return AdjointContact(force, motion, dual - answer.yielding @ of_motion, of_motion)
 
     def first_cells(self, forces: Floats, moments: Floats | None = None) -> Mask:
-        """A mask (U,) of the cells that are likely to touch under loads as of `solve`."""
+        """A mask (U,) of the cells that are likely to touch under the loads of `solve`."""
         acting = cell_loads(self.bands, len(self._cells), forces, moments)
         return facing_cells(self.bands, self._tail, self.sectors, self._e_r, acting)
 

@@ -1,4 +1,4 @@
-"""What given cells in contact answer: everything is linear in the loads as long as they touch."""
+"""The response of given cells in contact, which is linear in the loads as long as they touch."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from pinbase.arrays import Floats, Ints
 class AdjointContact:
     """The contact of given cells and its adjoint, for a weighted sum of the cells' forces.
 
-    force: (U,) N.
-    motion: rigid motions (Y,).
-    by_gap: decrease of the sum per gap at each cell, (U,).
-    by_required: increase of the sum per required resultant of each motion, (Y,).
+    force: forces of the cells, (U,) N.
+    motion: rigid motions, (Y,).
+    by_gap: decrease of the sum per unit of gap at each cell, (U,).
+    by_required: increase of the sum per unit of the required resultant of each motion, (Y,).
     """
 
     force: Floats
@@ -32,12 +32,14 @@ class Answer:
     """The linear response of one active set of cells to the rigid motions.
 
     rows: numbers of the cells in contact, (A,).
-    force: (U,) N without rigid motions.
-    yielding: how much each rigid motion takes off the forces, (U, Y).
-    system, right: equations (Y, Y), (Y,) of the motions, without the required resultants.
-    open: (U,) m, the gaps before any load. compliance: (U, U) m/N.
-    motions: change of the gap by each motion, (U, Y).
-    reach: the largest change of a gap by each motion, (Y,), 1 where it moves nothing.
+    force: forces of the cells without rigid motions, (U,) N.
+    yielding: decrease of the forces per unit of each rigid motion, (U, Y).
+    system, right: matrix (Y, Y) and right-hand side (Y,) of the equations of the motions, without
+    the required resultants.
+    open: gaps before loading, (U,) m.
+    compliance: displacements of cells under forces on cells, (U, U) m/N.
+    motions: change of the gaps by each motion, (U, Y).
+    reach: largest change of a gap by each motion, (Y,); 1 where the motion changes no gap.
     """
 
     rows: Ints
@@ -51,14 +53,17 @@ class Answer:
     reach: Floats
 
     def on_springs(self, pull: Floats, stiffness: float) -> tuple[Floats, Callable[[], Floats]]:
-        """The forces, and what gives the gaps, where springs, N/m of what each motion moves at
-        most, hold the lugs and the pin, and pull with given resultants as long as nothing moves.
+        """Return the forces of the cells, (U,) N, where springs hold the lugs and the pin, and a
+        function that returns the gaps, (U,) m.
+
+        pull: resultants with which the springs pull as long as nothing moves, (Y,).
+        stiffness: of the springs, N/m, for the largest gap change of each motion.
         """
         springs = stiffness * self.reach**2
         scale = np.outer(self.reach, self.reach)
         system = (self.system + np.diag(springs)) / scale
         motion, lost = np.zeros(len(pull)), self.right - pull
-        for _ in range(2):  # once more for round-off, as `under`
+        for _ in range(2):  # the second pass removes round-off, as in `under`
             motion += np.linalg.solve(system, lost / self.reach) / self.reach
             force = self.force - self.yielding @ motion
             lost = self.motions.T @ force - pull - springs * motion
@@ -73,7 +78,7 @@ class Answer:
 
     @cached_property
     def _gaps(self) -> tuple[Floats, Floats]:
-        """The gaps (U,) without rigid motions, and what each of these adds to them, (U, Y)."""
+        """The gaps without rigid motions, (U,), and their change by each motion, (U, Y)."""
         both = np.column_stack([self.yielding[self.rows], self.force[self.rows]])
         change = (both.T @ self.compliance[self.rows]).T  # symmetric
         gap, moving = self.open + change[:, -1], self.motions - change[:, :-1]
@@ -81,18 +86,19 @@ class Answer:
         return gap, moving
 
     def motion(self, lost: Floats) -> Floats:
-        """The motions (Y,) of least size that make up for lost resultants."""
+        """The smallest motions (Y,) that make up for missing resultants (Y,)."""
         modes, compliance = self._modes
         solved = modes @ (compliance * (modes.T @ (lost / self.reach)))
         return np.asarray(solved / self.reach, dtype=np.float64)
 
     @cached_property
     def _modes(self) -> tuple[Floats, Floats]:
-        """The modes of the equations of the motions, (Y, Y), and the compliance of each, (Y,), zero
-        where nothing moves.
+        """The eigenvectors (Y, Y) of the equations of the motions, and the compliance of each mode,
+        (Y,), zero where the cells in contact do not resist it.
         """
-        # Every motion counts as what it moves at most: otherwise a turn, whose numbers are those
-        # of a shift over a length, is taken for one that moves nothing where few cells touch.
+        # Motions are scaled by the largest gap change that they cause. Otherwise a turn, whose
+        # unit differs from that of a shift, would look like a mode without stiffness where few
+        # cells touch.
         stiffness, modes = np.linalg.eigh(self.system / np.outer(self.reach, self.reach))
         size = np.abs(stiffness)
         moves = size > len(size) * np.finfo(np.float64).eps * size.max(initial=0.0)
@@ -101,7 +107,7 @@ class Answer:
     def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
         """The forces, gaps and rigid motions with which the cells have the required resultants."""
         motion, lost = np.zeros(len(required)), self.right - required
-        for _ in range(2):  # once more for round-off: forces are small where gaps are large
+        for _ in range(2):  # the second pass removes round-off: forces are small in wide gaps
             motion += self.motion(lost)
             force = self.force - self.yielding @ motion
             lost = self.motions.T @ force - required

@@ -1,6 +1,4 @@
-"""Results that only contact has, of a pin in its lugs: edges, mean pressures, stress beneath
-contact.
-"""
+"""The results that only contact gives: edges of lugs, mean pressures, stress beneath contact."""
 
 from __future__ import annotations
 
@@ -32,9 +30,11 @@ def contact_place(
     """The results of contact at the row's instant.
 
     loads: on the rings at all instants of the case.
-    error: of the stress beneath contact, relative.
-    row: the maximum of surface and section, Pa, below which the depth of stress is not needed.
-    deep: whether the depth is wanted at all.
+    required: required safety factor, if there is one.
+    error: relative error of the stress beneath contact.
+    row: maximum of surface and section, Pa. The depth of smaller stresses is needed only down to
+    the stresses whose reach is stated.
+    deep: whether depths of stress are wanted at all.
     """
     deepest = answer.beneath(loads)
     limits = reached(material, required)
@@ -58,7 +58,9 @@ def contact_place(
 
 
 def reached(material: Material, required: float | None) -> tuple[float, ...]:
-    """The stresses, Pa, whose reach from contact is stated."""
+    """The stresses, Pa, whose reach from contact is stated: yield, and yield over the required
+    factor.
+    """
     strength = material.yield_strength
     if strength is None:
         return ()
@@ -66,7 +68,7 @@ def reached(material: Material, required: float | None) -> tuple[float, ...]:
 
 
 def _instant(loads: PinLoads, contact: JointContact) -> int:
-    """The number of the row's instant."""
+    """The number of the contact's instant among those of the loads."""
     here = contact.loads.times
     if loads.times is None or here is None:
         return 0

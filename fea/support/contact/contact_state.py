@@ -15,12 +15,12 @@ from pinbase.arrays import Mask
 class ContactState:
     """The contact of a pin at one instant.
 
-    pressure: (R, M), Pa, on the cells.
-    gap: (R, M), m.
-    shift: (B, 2), m, of the lugs against the pin along x and y.
-    turn: (2,), slopes dx / dz and dy / dz of the pin.
+    pressure: on the cells, (R, M) Pa.
+    gap: mean over the cells, (R, M) m.
+    shift: of the lugs relative to the pin along x and y, (B, 2) m.
+    turn: slopes dx / dz and dy / dz of the pin, (2,).
     steps: number of active-set steps.
-    angle: of the first cells' middle from the x axis, rad.
+    angle: of the middle of the first sector from the x axis, rad.
     """
 
     pressure: Floats
@@ -36,7 +36,7 @@ class ContactState:
         return self.gap <= 0.0
 
     def times(self, factor: float) -> ContactState:
-        """The state under so many times the loads, valid where there is no gap before loading."""
+        """The state under the loads times a factor, valid only without a gap before loading."""
         return ContactState(
             factor * self.pressure,
             factor * self.gap,
@@ -47,7 +47,7 @@ class ContactState:
         )
 
     def turned(self, angle: float) -> ContactState:
-        """The state turned about the axis by an angle, rad."""
+        """The state rotated about the axis by an angle, rad."""
         turn = rotation(angle).T
         return replace(
             self, shift=self.shift @ turn, turn=self.turn @ turn, angle=self.angle + angle
@@ -61,12 +61,12 @@ def rotation(angle: float) -> Floats:
 
 
 def wide_gap_half_angle(load: Floats, closing: Floats) -> Floats:
-    """The half angle of contact, rad, of Persson's plane contact in the limit of large gaps,
-    E* gap / load = 2 / (pi tan^2(half / 2)); too wide for small ones.
+    """The half angle of contact, rad, of Persson's plane contact in the limit of large gaps.
 
-    load: per length, N/m, or all along a length, N.
-    closing: E* times the gap on the radius, in the same unit; 4 R / E* is the tail of pin and lug
-    together.
+    E* gap / load = 2 / (pi tan^2(half / 2)); for small gaps this angle is too large.
+    load: per length, N/m, or on a whole length, N.
+    closing: E* times the radial gap, in the unit of the load. E* is 4 R over the tail of pin and
+    lug together (ContactProblem): twice the usual contact modulus.
     """
     closed = np.sqrt(np.pi * np.maximum(closing, 0.0))
     return np.asarray(2.0 * np.arctan2(np.sqrt(2.0 * load), closed))

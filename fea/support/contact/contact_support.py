@@ -1,12 +1,12 @@
-"""Pins in their lugs: contact at every instant of every case, stress, its error, and by how much
-the maximum depends on what is not known of the joint.
+"""The support of a pin by lugs in contact.
 
-Stress under the pressures is found as under any loads (fea.solve.solve), of a pin that nothing
-clamps. To the error of meshes and instants comes that of the cells: contact at the instant that
-governs on the first mesh is solved once more on cells twice as large, and from the difference, by
-the order of cells, follows their error; they are refined until it is a part of the tolerance. Where
-only a required factor is to be decided, larger cells come first, which take a third of the time,
-and are enough if they decide it with their error, also for what lies beneath the contact.
+Stress under the contact pressures is computed as under any loads of an unclamped pin
+(fea.solve.solve). The error of the cells adds to that of meshes and instants. To estimate it,
+contact at the instant that governs on the first mesh is solved again on cells twice as large. The
+error follows from the difference, by the order of convergence of the cells. The cells are refined
+until their error is a set part of the tolerance. Where only a required factor is to be decided,
+larger cells come first, which take a third of the time. They are enough if they decide the factor
+in spite of their error, also for the stress beneath contact.
 """
 
 from __future__ import annotations
@@ -42,11 +42,12 @@ Arcs = Literal["wide", "narrow"]
 class ContactSupport:
     """A support by lugs in contact, on cells of one resolution (fea.support.support.Support).
 
+    cells: the resolution.
     finer: the next resolution, None for the last.
+    alone: None: with the error of the cells. "alone": without it. "unit": without it, by unit
+    pressures of the rings, which a memo keeps (fea.support.contact.unit_pressures).
     arcs: the cases that are held: "wide", those whose arcs of contact the usual cells follow;
-    "narrow", all that are left, on cells that follow their arcs; None, all on usual cells.
-    alone: without an error of the cells or variations of the joint; "unit": by unit pressures of
-    the rings, which a memo has (fea.support.contact.unit_pressures).
+    "narrow", all that are left, on cells that follow their arcs; None, all on these cells.
     """
 
     def __init__(
@@ -65,7 +66,7 @@ class ContactSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldContact:
-        """Hold the pin, as every support does; a case that no contact can carry fails before
+        """Hold the pin as every support does; a case whose loads no contact can carry fails before
         anything is meshed.
         """
         refused: dict[str, Maximum] = {}
@@ -74,8 +75,8 @@ class ContactSupport:
         if isinstance(coarser, HeldContact):
             near = coarser.candidates
             if self.arcs == "wide":
-                # Cells that follow narrow arcs have many harmonics and few rings, so that they
-                # neither suit a case with wide ones nor should be solved for it.
+                # Cells that follow narrow arcs have many harmonics and few rings. They do not suit
+                # a case with wide arcs, and would cost too much for it.
                 left = tuple(case for case in left if not coarser.narrow(case))
             if not left:
                 return replace(coarser, starts={})  # none is held
@@ -89,7 +90,8 @@ class ContactSupport:
         elif not contact.instants.keys() <= near.keys():
             near = contact.near(requirement)
         contact.follow(near)
-        # More cells than memory allows are none; and on the last ones all cases are answered.
+        # These cells are the last if finer ones do not exist or exceed the allowed number of cells.
+        # On the last cells all cases are answered.
         finest = finer in (None, cells)
         if finer is not None:
             finest |= model.ring_count(finer.rings) * finer.sectors > MAX_CELLS
@@ -114,7 +116,7 @@ class ContactSupport:
         cases: tuple[PinLoads, ...],
         progress: Progress,
     ) -> tuple[ContactModel, PressedCases]:
-        """The flexibilities on these cells, and the cases that are pressed by them."""
+        """The contact model on these cells, and the pressures of the cases."""
         name, cut = problem.pin.name, isinstance(problem.pin, CutPin)
         progress(f"pin {name}, flexibility of {cells.rings} rings of each lug")
         of = profile_of(problem.pin), problem.material, problem.lugs
@@ -130,7 +132,10 @@ class ContactSupport:
     def _cells(
         self, coarser: HeldContact, cases: Sequence[PinLoads], requirement: Requirement
     ) -> tuple[Resolution, Resolution | None]:
-        """The cells on which some cases are held after coarser ones, and the finer ones."""
+        """The resolution on which some cases are held after a coarser one, and the next finer one.
+
+        coarser: the pin held on the coarser resolution.
+        """
         if self.arcs == "narrow":
             finer = self.finer and coarser.for_arcs(self.finer, cases)
             return coarser.for_arcs(self.cells, cases), finer
@@ -147,7 +152,8 @@ def _with_failures(
 ) -> HeldContact:
     """The held pin with the cases that have no solution, and notes on the others.
 
-    cases: those that were held. failed: the errors of those without contact.
+    cases: those held on these cells.
+    failed: for each case without contact, the error.
     """
     starts = tuple(held.starts.values())
     rigid, _, notes = balanced(held.pin, problem.material, starts, "harmonic")
@@ -160,9 +166,9 @@ def _with_failures(
 
 
 def _seeing(model: ContactModel, pin: PinLike) -> ContactModel:
-    """The model that sees the cuts of a pin, if it has any with which stress can be solved.
+    """The model, seeing the pin's cuts if the pin has cuts for which stress can be solved.
 
-    (Others are refused when it is.)
+    Other cuts are refused when stress is solved.
     """
     if not isinstance(pin, CutPin) or refusal(pin, (), pin.connections) is not None:
         return model

@@ -1,35 +1,35 @@
-"""Peak of contact at a rounded edge of a lug, from the pressure beside it.
+"""The peak of contact pressure at a rounded edge of a lug, from the pressure beside it.
 
-Contact reaches only a few hundredths of the radius into the rounding, so that rings which resolve
-its peak would take a hundred times the work of all others. Seen from afar the edge is sharp, and
+Contact reaches only a few hundredths of the radius into the rounding. Rings that resolve its peak
+would take a hundred times the work of all others. From some distance the edge looks sharp, and the
 pressure rises towards the face of the lug as
 
     p = K x^-s (1 + b (r / x)^(2 - 2 s)) + A x^q,
 
-s the exponent of a sharp edge, q the power of the next term (fea.singular.lug_edge); b is what the
-radius r leaves of itself farther off, a field that grows towards the edge as the one conjugate to
-the first does. K and A follow from the force from the face to the ends of rings, which does not
-depend on how the peak is resolved: by least squares, forces being right to RING_FORCE_ERROR, and A
-not likely to change the pressure at a diameter from the edge by more than REGULAR_TERM_RATIO times
-the first term.
+where x is the distance from the face, s the exponent of a sharp edge and q the power of the next
+term (fea.singular.lug_edge). The term with b is the remaining effect of the radius r at a distance;
+it grows towards the edge like the field that is conjugate to the first. K and A follow from the
+forces between the face and the ends of rings, which do not depend on how the peak is resolved. They
+are fitted by least squares, with forces accurate to RING_FORCE_ERROR, and with A unlikely to change
+the pressure at one diameter from the edge by more than REGULAR_TERM_RATIO times the first term.
 
-Close by, both
-bodies are half-planes, one flat and then rounded by a radius r: pressure there is (y from the end
-of contact, d the length of contact in the rounding)
+Close to the edge both bodies are half-planes, of which one is flat and then rounded by a radius r.
+With y from the end of contact, and d the length of contact in the rounding, the pressure is
 
     p(y) = E* / (2 pi r) (2 sqrt(d y) + (y - d) ln |(sqrt d - sqrt y) / (sqrt d + sqrt y)|),
 
-0.3818 E* d / r at most and (2 E* d^1.5 / (3 pi r)) / sqrt(y) far away. In between only one size is
-left, r, so that the peak is
+at most 0.3818 E* d / r, and (2 E* d^1.5 / (3 pi r)) / sqrt(y) far away. Between the two regions r
+is the only length, so that the peak is
 
-    p = C (E* K^2 r^(-2 s))^(1/3),    1 / E* = (1 - nu^2) / E of pin and of lug,
+    p = C (E* K^2 r^(-2 s))^(1/3),    1 / E* = (1 - nu^2) / E of the pin + that of the lug,
 
-with a number C of the exponent alone: 1.073 exactly for a rigid lug, s = 1/2, whose edge is no
-wedge, and b = 1/2 (its edge is where rounding begins); of others measured by resolved rings, which
-agree to 1 % with finite elements of a lug whose edge is rounded (python -m benchmarks edge-peak).
+where C depends on the exponent alone. For a rigid lug, s = 1/2, C is exactly 1.073 and b is 1/2
+(its edge is not a wedge, and is where rounding begins). For other exponents they were measured by
+resolved rings, which agree to 1 % with finite elements of a lug whose edge is rounded (python -m
+benchmarks edge-peak).
 
-Sources: D. Dini & D. A. Hills, J. Appl. Mech. 71 (2004) for the half-planes; von Mises below by
-integrating Flamant's solution.
+Sources: D. Dini & D. A. Hills, J. Appl. Mech. 71 (2004) for the half-planes; von Mises stress below
+the surface by integrating Flamant's solution.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ End = Literal["start", "end"]
 EDGE_EXPONENTS = 0.11, 0.226, 0.5  # aluminium on steel, like on like, rigid
 PRESSURE_COEFFICIENTS = 0.925, 0.965, 1.073
 REACH_COEFFICIENTS = 0.42, 0.45, 0.5
-EDGE_PEAK_ERROR = 0.1  # relative, of resolved peaks (on usual cells 6 %)
+EDGE_PEAK_ERROR = 0.1  # relative to resolved peaks (6 % on usual cells)
 RING_FORCE_ERROR, REGULAR_TERM_RATIO = 0.03, 0.5
 STATION_ROUND_OFF = 1e-9
-# Edge radii from the face: from there on forces are compared with the expansion
+# Distance from the face, in edge radii, from which on forces are compared with the expansion.
 MIN_FIT_DISTANCE = 2.0
 # Largest von Mises stress below the surface over the largest pressure, by Poisson's ratio.
 POISSON_RATIOS = 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5
@@ -65,8 +65,8 @@ SUBSURFACE_STRESS_RATIOS = 0.5730, 0.5399, 0.5157, 0.4979, 0.4858, 0.4787, 0.476
 class EdgePeak:
     """The peak of contact at a rounded edge.
 
-    pressure: the largest, Pa.
-    von_mises: largest stress of the pin under it by contact alone, Pa.
+    pressure: largest pressure, Pa.
+    von_mises: largest von Mises stress in the pin below it, by contact alone, Pa.
     reach: length of contact in the rounding, m.
     """
 
@@ -76,9 +76,9 @@ class EdgePeak:
 
 
 def contact_edges(contact: JointContact, material: Material) -> tuple[ContactEdge, ...]:
-    """The edges of contact at a single instant: both edges of each band, where they carry load.
+    """The edges of contact at a single instant: the edges of each band that carry load.
 
-    material: the pin's.
+    material: of the pin.
     """
     out = []
     for b, lug in enumerate(contact.lugs):
@@ -114,23 +114,25 @@ def _edge(lug: Lug, end: End, K: float, exponent: float, material: Material) -> 
 def strength_at_edge(
     pressure: Floats, length: Floats, radius: float, powers: tuple[float, float], diameter: float
 ) -> float:
-    """The largest intensity K round the pin of a sharp edge, Pa m^s.
+    """The intensity K of a sharp edge, Pa m^s, the largest around the pin.
 
-    pressure, length: of rings (R, M) and (R,) from a face on, Pa and m.
+    pressure: on the cells of the rings, in order from the face of the lug, (R, M) Pa.
+    length: of these rings, (R,) m.
     radius: of the rounded edge, m.
-    powers: the exponent s and the power q.
+    powers: exponent s and power q.
     diameter: of the pin, m.
     """
     stations = np.concatenate([[0.0], np.cumsum(length)])
     half, least = 0.5 * stations[-1] * (1.0 + STATION_ROUND_OFF), radius * (1.0 + STATION_ROUND_OFF)
     inside = np.flatnonzero((stations > least) & (stations <= half))
     far = inside[stations[inside] >= MIN_FIT_DISTANCE * radius * (1.0 - STATION_ROUND_OFF)]
-    at = far if len(far) > 1 else inside[-2:]  # a rounding that leaves little of the band flat
+    at = far if len(far) > 1 else inside[-2:]  # where rounding leaves little of the band flat
     if not len(at):
         return 0.0
     x, (s, q) = stations[at], powers
     b = float(np.interp(s, EDGE_EXPONENTS, REACH_COEFFICIENTS))
-    # The force from the face to x, over x^(1 - s) / (1 - s), of K and of A diameter^(s + q).
+    # The forces from the face to x, divided by x^(1 - s) / (1 - s), for a unit of K and a unit of
+    # A diameter^(s + q).
     of_k = 1.0 - b * (radius / x) ** (2.0 - 2.0 * s)
     of_a = (1.0 - s) / (1.0 + q) * (x / diameter) ** (s + q)
     terms = np.stack([of_k, of_a], axis=1)
@@ -143,7 +145,7 @@ def strength_at_edge(
 def edge_peak(K: float, exponent: float, lug: Lug, material: Material) -> EdgePeak:
     """The peak at a rounded edge.
 
-    K: intensity of the sharp edge, Pa m^s, s being the exponent.
+    K: intensity of the sharp edge, Pa m^s. exponent: s. material: of the pin.
     """
     r, soft = lug.edge_radius, material.plane_compliance + lug.bearing.plane_compliance
     pressure = float(np.interp(exponent, EDGE_EXPONENTS, PRESSURE_COEFFICIENTS)) * (

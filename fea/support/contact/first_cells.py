@@ -1,4 +1,4 @@
-"""The cells of contact with which the search for those that touch begins."""
+"""The first guess of the cells in contact, with which the active set starts."""
 
 from __future__ import annotations
 
@@ -10,15 +10,17 @@ from fea.support.bands import Bands
 from fea.support.contact.contact_state import wide_gap_half_angle
 from pinbase.arrays import Floats, Mask
 
-# A cell belongs to the first guess if the cosine between its normal and the load is larger.
+# Smallest cosine of the angle between the normal of a cell and the load, for the first guess.
 FACING_COSINE = 0.3
 
 
 def cell_loads(bands: Bands, per_ring: int, forces: Floats, moments: Floats | None) -> Floats:
-    """The load of each cell's band (U, 2), N: the force of its link, and the part of a moment,
-    were it linear along the band, as an even load of the same size.
+    """The load by which each cell is judged, (U, 2) N.
 
-    per_ring: cells of a ring. forces: of links (L, 2), N. moments: of lugs (B, 2), N m.
+    It is the force of the link, and the local load of the lug's moment, taken as linear along the
+    band, times the length of the band.
+    per_ring: number of cells on a ring.
+    forces: of the links, (L, 2) N. moments: of the lugs, (B, 2) N m.
     """
     band, z = (np.repeat(x, per_ring) for x in (bands.band, bands.z))
     of_links = forces[bands.links[band]]
@@ -31,10 +33,10 @@ def cell_loads(bands: Bands, per_ring: int, forces: Floats, moments: Floats | No
 
 
 def facing_cells(bands: Bands, tail: float, sectors: int, normals: Floats, loads: Floats) -> Mask:
-    """A mask (U,) of the cells that face the load of their band, as far around as it presses.
+    """A mask (U,) of the cells that face their load, within the half angle of contact.
 
-    tail: as of ContactProblem, the largest. sectors: of a full turn.
-    normals: of the cells (U, 2), all of one size. loads: (U, 2), N.
+    tail: the largest of ContactProblem. sectors: number around the circumference.
+    normals: of the cells, (U, 2), all of the same length. loads: of `cell_loads`, (U, 2) N.
     """
     size = np.linalg.norm(loads, axis=1)
     towards = -np.einsum("ua,ua->u", normals, loads)
@@ -43,8 +45,10 @@ def facing_cells(bands: Bands, tail: float, sectors: int, normals: Floats, loads
 
 
 def _contact_cosine(bands: Bands, tail: float, sectors: int, size: Floats) -> Floats:
-    """The cosine (U,) of the half angle of contact by the size (U,), N, of the load of each cell's
-    band, if that were even along it.
+    """The cosine (U,) of the half angle of contact of each cell, as if its load were uniform along
+    its link's bands.
+
+    size: of the load of each cell, (U,) N.
     """
     count, link = int(bands.links.max()) + 1, bands.links[bands.band]
     gap, length = np.full(count, np.inf), np.zeros(count)
@@ -53,5 +57,5 @@ def _contact_cosine(bands: Bands, tail: float, sectors: int, size: Floats) -> Fl
     stiffness = 4.0 * bands.radius.max() / tail
     of_cells = np.repeat(link, len(size) // len(bands.z))
     half = wide_gap_half_angle(size, stiffness * (gap * length)[of_cells])
-    nearest = math.cos(1.01 * math.pi / sectors)  # one cell at least
+    nearest = math.cos(1.01 * math.pi / sectors)  # at least one cell faces every load
     return np.asarray(np.clip(np.cos(half), FACING_COSINE, nearest))

@@ -1,15 +1,17 @@
-"""Flexibility of rings, by harmonic: the mean displacement of rings under even pressures on them.
+"""The flexibility of rings, harmonic by harmonic: mean displacements of rings under pressure.
 
-A pressure p cos n theta on a ring moves the mean of u_r over each ring by C_n p cos n theta. By the
-theorem of Betti C_n times the rings' lengths is symmetric; it is made exactly so. Rigid motions are
-left open: the pin's by a support that is statically determinate, which balanced pressures do not
-feel; the lug's by a reaction on its outer surface, of constant direction and linear along z, and
-by measuring from the mean motion of that surface in the same weight, so that it is guided.
+A pressure p cos n theta, uniform along a ring, displaces each ring by C_n p cos n theta on the
+average over the ring. By Betti's theorem, C_n times the lengths of the rings is symmetric; it is
+made exactly symmetric. Rigid motions are not part of the flexibility. The pin is held by a
+statically determinate support, which has no reaction to balanced pressures. The lug is guided: it
+is held by a reaction on its outer surface, of constant direction and linear along z, and
+displacements are relative to the mean motion of that surface, taken with the same weight.
 
-Beyond the last harmonic that is computed so, pressures are felt no deeper than R / n, and rings
-have a half-space's answer to p(z) cos n theta: the convolution of p with 2 (1 - nu^2) / (pi E)
-times the Bessel function K0(n z / R); for a long ring that is u_n = 2 (1 - nu^2) R p_n / (E n), the
-half-plane's. In a lug it is mirrored at its faces, and with a bushing it is a layer's.
+Pressures of harmonics beyond the last that is computed so have effects no deeper than about R / n.
+Rings then respond to p(z) cos n theta like a half-space: the displacement is the convolution of p
+with 2 (1 - nu^2) / (pi E) times the Bessel function K0(n z / R). For a long ring that is the
+half-plane's u_n = 2 (1 - nu^2) R p_n / (E n). In a lug the response is mirrored at the faces, and
+with a bushing it is that of a layer.
 
 Sources: Johnson, Contact Mechanics, sec. 13.2 (a wavy pressure on a half-space); Nogi & Kato, J.
 Tribol. 119 (1997) 493 (the layer).
@@ -44,10 +46,11 @@ OUTWARDS = np.array([1.0, 0.0, 0.0])
 
 @dataclass(frozen=True)
 class RingBody:
-    """A body on one mesh, the rings of its surface (by name), and the direction of pressure on
-    them.
+    """A body on one mesh with rings on its surface.
 
-    guided: whether it is held like a lug.
+    rings: names of the rings.
+    pushed: direction of the pressure on the rings: amplitudes along r, theta and z, (3,).
+    guided: whether the body is held like a lug.
     """
 
     body: HarmonicBody
@@ -67,12 +70,12 @@ class RingBody:
 
     @cached_property
     def _unit_forces(self) -> Floats:
-        """The nodal forces for each unit around the axis, alike for all harmonics."""
+        """The nodal forces divided by `around`, which are the same for all harmonics."""
         unit = [(Traction(name, 0.0, self.pushed, NO_SLOPE),) for name in self.rings]
         return self.body.forces(0, unit) / around(0)
 
     def balanced(self, n: int, forces: Floats) -> Floats:
-        """The forces of harmonic n with the reaction of what guides the body."""
+        """The forces of harmonic n, with the reaction that guides the body if it is a lug."""
         if self.guided and n == 1:
             return self.reacted(self.body.outline, self.body.pin.length, forces)
         return forces
@@ -80,7 +83,7 @@ class RingBody:
     def reacted(self, outline: Outline, length: float, forces: Floats) -> Floats:
         """The forces of harmonic 1 (unknowns, K) with the reaction on the outer surface.
 
-        The reaction has a constant direction.
+        The reaction has a constant direction and is linear along z.
         """
         reactions = [
             tuple(Traction(name, 0.5 * length, *parts) for name in self.body.pin.connections)
@@ -107,7 +110,7 @@ def pin_rings(pin: Pin, rings: Sequence[str], material: Material, across: float)
 
 
 def _grades(pin: Pin, rings: Sequence[str], growth: float) -> list[Grade]:
-    """The fineness at a ring's ends, where elements are no longer than half of it."""
+    """The mesh sizes at the ends of rings: elements there are at most half as long as the ring."""
     bands = (pin.band(name) for name in rings)
     return [Grade(((b.radius, b.z0), (b.radius, b.z1)), b.length / 2.0, 0.0, growth) for b in bands]
 
@@ -129,15 +132,16 @@ def lug_rings(eye: Pin, lug: Lug, across: float) -> RingBody:
 
 
 def half_plane(material: Material, radius: float) -> float:
-    """The displacement n u_n / p_n of one body for high harmonics n, m/Pa."""
+    """The value n u_n / p_n of one body for high harmonics n, m/Pa."""
     return 2.0 * radius * material.plane_compliance
 
 
 def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves: Ints) -> Floats:
-    """The flexibility C_n (2, N, R, R), m/Pa, of a lug's rings for high harmonics `waves` (N,).
+    """The flexibility C_n (2, N, R, R), m/Pa, on a lug's rings for high harmonics.
 
-    The first is that of the pin as a half-space, the second of the lug, which its faces end.
+    The first is that of the pin as a half-space, the second that of the lug with its two faces.
     ends: of the rings, (R + 1,) m along z.
+    waves: the harmonics, (N,).
     """
     on, beyond = _responses(tuple((ends / radius).tolist()), tuple(waves.tolist()))
     n = waves[:, None, None]
@@ -148,8 +152,10 @@ def wavy_flexibility(lug: Lug, pin: Material, radius: float, ends: Floats, waves
 
 @lru_cache(maxsize=4)
 def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """The responses of a half-space on rings with such ends, over the radius, and the terms that
-    mirrors add.
+    """The responses of a half-space on rings, and the terms that the mirror images at the faces
+    add, (N, R, R) each.
+
+    ends: of the rings, divided by the radius. waves: the harmonics.
     """
     x = np.outer(waves, ends)
     beyond = _half_space(x, -x) + _half_space(x, 2.0 * x[:, -1:] - x)
@@ -157,9 +163,8 @@ def _responses(ends: tuple[float, ...], waves: tuple[int, ...]) -> tuple[Floats,
 
 
 def _half_space(x: Floats, y: Floats) -> Floats:
-    """The mean response over each ring to a pressure at wave number 1, over a plane's: (N, R, R).
-
-    It is that of rings with ends x (N, R + 1), under pressure on rings with ends y.
+    """The mean displacement of rings with ends x (N, R + 1) under pressure on rings with ends y, at
+    wave number 1, divided by that of a half-plane, (N, R, R).
     """
     twice = _integral_of_k0(np.abs(x[:, :, None] - y[:, None]))
     both = twice[:, 1:, :-1] + twice[:, :-1, 1:] - twice[:, 1:, 1:] - twice[:, :-1, :-1]
@@ -175,10 +180,10 @@ def _integral_of_k0(x: Floats) -> Floats:
 
 
 def layered(lug: Lug, waves: float) -> float:
-    """The displacement of a lug with a bushing under a wavy pressure, over that of a half-plane of
-    the bushing's material.
+    """The displacement of a lug with a bushing under a wavy pressure, divided by that of a
+    half-plane of the bushing's material.
 
-    waves: 2 pi / wavelength, 1/m.
+    waves: wave number, 2 pi / wavelength, 1/m.
     """
     if lug.bushing is None:
         return 1.0

@@ -1,16 +1,17 @@
-"""Friction of a pin in its lugs, bounded by the pressures of contact without it.
+"""Bounds of the effects of friction between a pin and its lugs, from contact without friction.
 
-Torque: where pin and lug turn on each other, friction is mu p on every cell, against the sliding:
-the torque between them is at most mu times the integral of p R over the band. That is more than mu
-F R, since pressures on an arc do not all point along their resultant. Which lugs turn on the pin,
-and which way, is not known: a section's torque is at most that of all rings on one side of it, and
-of all rings on the other, which react it.
+Torque: where a lug turns on the pin, the friction on every cell is mu p, against the sliding. The
+torque between lug and pin is then at most mu times the integral of p R over the band. That is more
+than mu F R, since pressures on an arc do not all point along their resultant. Which lugs turn on
+the pin, and in which sense, is unknown. The torque in a section is at most that of all rings on one
+side of it, and at most that of all rings on the other side, which react it.
 
-Bending: as the pin bends, its surface slides along the bores where it is pressed, and friction mu
-p along the axis takes a part of the bending moment while the load grows, up to mu R F on each band.
-When the load falls after a larger one the sliding reverses, and friction adds to the moment. How
-far that has come depends on the history, and on what sticks. Full slip under the pressures without
-friction bounds it: on every ring as it changes the moment of a section most, in balance.
+Bending: as the pin bends, its surface slides along the bores where it is pressed. While the load
+grows, the friction mu p along the axis carries a part of the bending moment, up to mu R F on each
+band. When the load falls after a larger one, the sliding reverses, and friction adds to the moment.
+How far it has reversed depends on the load history and on where the surfaces stick. Full slip under
+the pressures without friction is a bound: friction acts on every ring in the sense that changes the
+moment in the sections most, and is in balance.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ from fea.support.records import FRICTION, Variation
 from pinbase.arrays import Floats
 
 SLIDING, TURNING = "pin sliding as it bends", "links turning on the pin"
-# Shares of the friction along the axis and around it, in both senses. On one cell they are parts of
-# one friction, so that a pin that slides while links turn has some of both.
+# Shares of the friction that act along the axis and around it, in both senses. Both are components
+# of one friction on a cell, so that a pin that slides while links turn has some of both.
 HALF, MOST = 0.5, math.sqrt(0.75)
 SENSES = 1.0, -1.0
 SHARES: dict[str, tuple[tuple[float, float], ...]] = {
@@ -62,7 +63,7 @@ def rubs(lugs: Sequence[Lug]) -> bool:
 
 
 def coefficient_words(lugs: Sequence[Lug]) -> str:
-    """Return the coefficients of friction of lugs in words."""
+    """Return the range of the coefficients of friction of the lugs as text."""
     ends = dict.fromkeys(f"{f(lug.friction for lug in lugs):g}" for f in (min, max))
     return " to ".join(ends)
 
@@ -81,35 +82,37 @@ def band_torques(model: ContactModel, states: Sequence[ContactState]) -> Floats:
 
 
 def opposed(torques: Floats, z: Floats) -> Floats:
-    """The torques (R,) on rings, in balance, by which every section has the largest torque that
-    friction can cause there.
+    """The torques on rings, (R,) N m, that are in balance and give every section the largest torque
+    that friction can cause there.
 
-    torques: the largest of each ring, (R,) N m. z: of their middles, (R,) m.
+    torques: largest friction torque on each ring, (R,) N m.
+    z: of the middles of the rings, (R,) m.
     """
     order = np.argsort(z)
     before = np.cumsum(torques[order])
     total = before[-1]
-    at_ends = np.minimum(before, total - before)  # of each ring
+    at_ends = np.minimum(before, total - before)  # largest torque at the end of each ring
     at_ends[-1] = 0.0
     most = at_ends.max()
     if most <= 0.0:
         return np.zeros_like(torques)
-    # Within the ring where one half of all torque is reached, a section has that half.
+    # A section within the ring where half of the total torque is reached has that half. Only the
+    # ends of rings are seen here, so that all torques are scaled up to reach it.
     out = np.zeros_like(torques)
     out[order] = np.diff(at_ends, prepend=0.0) * (0.5 * total / most)
     return out
 
 
 def along_axis(model: ContactModel, contact: JointContact) -> Floats:
-    """The friction along the axis over the pressure, by ring, (R,), by which every section has the
-    largest change of moment that friction can cause there.
+    """The ratio of the friction along the axis to the pressure on each ring, (R,), that gives every
+    section the largest change of moment that friction can cause there.
     """
     bands = model.bands
     friction = np.array([lug.friction for lug in model.lugs])[bands.band]
     force = contact.line_load[0] * bands.length[:, None]
     (of_lugs,) = bands.sums(force[None])
     largest = of_lugs[np.linalg.norm(of_lugs, axis=1).argmax()]
-    # mu p along the axis turns a ring by mu R times its force.
+    # A friction mu p along the axis gives a ring a couple of mu R times its force.
     arm = bands.radius * (force @ (largest / (np.linalg.norm(largest) or 1.0)))
     couples = opposed(friction * np.abs(arm), bands.z)
     share: Floats = np.divide(couples, arm, out=np.zeros_like(couples), where=arm != 0.0)
@@ -117,8 +120,10 @@ def along_axis(model: ContactModel, contact: JointContact) -> Floats:
 
 
 def rubbed_across(model: ContactModel, contact: JointContact, own: LoadedJoint) -> float:
-    """The largest bending moment of a pin whose friction along the axis adds to it, over that
+    """The largest bending moment with friction along the axis that adds to it, divided by that
     without friction.
+
+    own: the pin in its lugs without friction.
     """
     bands, z = model.bands, stations(model.pin)
     couples = (along_axis(model, contact) * bands.radius)[:, None] * own.line_load[0]
@@ -131,9 +136,9 @@ def rubbed_across(model: ContactModel, contact: JointContact, own: LoadedJoint) 
 def rubbed(
     model: ContactModel, contact: JointContact, known: PressureModes | None = None
 ) -> tuple[PressureLoads, dict[str, list[PressureLoads]]]:
-    """The loads of a contact at one instant, and those with friction by SHARES.
+    """The loads of a contact at one instant without friction, and with friction for each of SHARES.
 
-    known: patterns of pressures that have been solved.
+    known: existing patterns of pressures.
     """
     bands, waves = model.bands, model.waves(contact.contact)
     patterns = model.patterns([(waves, MODE_TOLERANCE)], known)
@@ -153,10 +158,10 @@ def rubbed(
 def friction_variations(
     lugs: Sequence[Lug], ratios: dict[str, list[tuple[float, float, float]]], across: float
 ) -> Iterator[Variation]:
-    """Yield the bounds by friction of the stress, relative to that without.
+    """Yield the variations of the stress by friction, relative to the stress without friction.
 
-    ratios: of the row, the surface and what lies beneath, by the kind of sliding. across: of the
-    moment where friction adds to it.
+    ratios: for each kind of sliding, the ratios of the row, of the surface and beneath contact.
+    across: ratio of the bending moment where friction adds to it.
     """
     words = coefficient_words(lugs)
     for name, which, kind, growth in (
@@ -174,10 +179,11 @@ def _areas(bands: Bands) -> Floats:
 
 
 def turning_traction(model: ContactModel, torque: Floats) -> dict[UnitLoad, Floats]:
-    """The traction about the axis of torques (R,) N m on rings, as a unit load with its amount
-    (1, 2) at one instant; none where there is no torque.
+    """The traction around the axis by torques (R,) N m on rings, as a unit load with its amount
+    (1, 2) at one instant; empty without torques.
 
-    It is one pattern over all rings, as those along the axis are: within a lug it has no edge.
+    All rings are parts of one pattern, like those along the axis, so that the traction has no edges
+    within a lug.
     """
     shear = torque / (_areas(model.bands) * model.bands.radius)
     size = float(np.linalg.norm(shear))

@@ -1,5 +1,5 @@
-"""A pin in contact with its lugs: stress, its error, and by how much the maximum depends on what is
-not known of the joint.
+"""A pin in contact with its lugs: stress, its error, and the range of the maximum over the
+uncertain properties of the joint.
 """
 
 from __future__ import annotations
@@ -42,8 +42,11 @@ from geometry.shape.rings import USUAL_RING_COUNT, whole_names
 
 
 def cells_matter(solution: Solution, limit: float) -> bool:
-    """Return whether a limit, Pa, is within the error, and would not be if cells had none; or
-    whether the pin meets it, and over the range of its joint only the error may not.
+    """Return whether the error of the cells leaves open whether the pin meets a limit, Pa.
+
+    It does if the limit lies within the error of the maximum, but not within the error without the
+    part of the cells. It also does if the pin meets the limit as given, but a stress of the range
+    over the joint meets it only without its error.
     """
     peak = solution.peak
     meets = meets_limit(peak, limit)
@@ -67,11 +70,13 @@ def cells_matter(solution: Solution, limit: float) -> bool:
 class HeldContact:
     """A pin in contact with its lugs (fea.support.support.HeldPin).
 
-    starts: by case that is held, the pressures at the instants of which their patterns are made.
-    candidates: by case, the instants that may govern.
-    compared: by case, contact on these cells, or the last that held it, against that on larger
-    ones.
-    alone: whether nothing is compared with other cells or meshes. rough: whether the cells are.
+    starts: for each case held here, the pressures at the instants from which patterns are made.
+    candidates: for each case, the instants that may govern.
+    compared: for each case, the comparison with larger cells, on these cells or on the last ones
+    that held the case.
+    finest: whether no finer cells follow.
+    alone: whether nothing is compared with other cells or meshes.
+    rough: whether the cells are the rough ones (resolution.ROUGH).
     """
 
     problem: PinProblem
@@ -88,17 +93,17 @@ class HeldContact:
 
     @property
     def model(self) -> ContactModel:
-        """The flexibilities of pin and lugs."""
+        """The contact model, with the flexibilities of pin and lugs."""
         return self.contact.model
 
     def for_arcs(self, cells: Resolution, cases: Sequence[PinLoads]) -> Resolution:
-        """The resolution that follows the pressure on the arcs of contact in some cases."""
+        """The resolution that follows the pressure on the arcs of contact of the given cases."""
         arcs = [self.compared[x.case].half_angle for x in cases if x.case in self.compared]
         usual = self.model.ring_count(USUAL_RING_COUNT)
         return cells.for_arcs(min(arcs, default=0.5 * np.pi), usual)
 
     def narrow(self, case: PinLoads) -> bool:
-        """Return whether the finest of the usual cells do not follow a case's arcs of contact."""
+        """Return whether a case's arcs of contact are too narrow for the finest usual cells."""
         return self.for_arcs(RESOLUTIONS[-1], [case]) is not RESOLUTIONS[-1]
 
     def far_from(self, cases: Sequence[PinLoads], requirement: Requirement) -> bool:
@@ -109,7 +114,7 @@ class HeldContact:
 
     @property
     def cut(self) -> CutPin | None:
-        """The pin with its cuts, if it has any."""
+        """The pin with its cuts; None for a pin without cuts."""
         return self.problem.pin if isinstance(self.problem.pin, CutPin) else None
 
     @cached_property
@@ -124,15 +129,15 @@ class HeldContact:
         return RingedCutPin(**made, whole=whole)
 
     def start(self, case: str) -> PinLoads:
-        """The pressures at the instants from which their patterns are made."""
+        """The pressures of a case at the instants from which patterns are made."""
         return self.starts[case]
 
     def press(self, links: PinLoads) -> PinLoads:
-        """The pressures under loads of the links."""
+        """The pressures on the pin under loads of the links."""
         return self.contact.press(links)
 
     def resolved(self, case: str, requirement: Requirement) -> bool:
-        """Return whether finer cells would not help, or there are none."""
+        """Return whether finer cells are unnecessary or do not exist."""
         known = self.compared.get(case) if case in self.starts else None
         if known is None:
             return False
@@ -142,17 +147,19 @@ class HeldContact:
         return self.finest or (followed and fine)
 
     def of_meshes(self, requirement: Requirement) -> Requirement:
-        """The requirement on the meshes, with a smaller tolerance since cells use a part of it.
+        """The requirement on the meshes, with the part of the tolerance that the cells leave.
 
-        It is relaxed where sections govern, and in minor cases.
+        The requirement is relaxed where sections govern, and in minor cases.
         """
         requirement = with_minor(requirement, self.compared)
         cells = {case: x.surface.cells.surface for case, x in self.compared.items()}
-        return replace(requirement, besides=cells, elsewhere=self._in_sections())
+        return replace(requirement, other_errors=cells, section_stress=self._in_sections())
 
     def _in_sections(self) -> dict[str, float]:
-        """The largest stress of sections by case, Pa; none for pins with cuts, and for those with a
-        hardened surface, beneath which stress matters, too.
+        """The largest stress of the sections, Pa, for each case.
+
+        The result is empty for pins with cuts, and for pins with a hardened surface, where stress
+        beneath the surface matters, too.
         """
         if self.cut is not None or self.problem.material.hardened:
             return {}
@@ -162,8 +169,8 @@ class HeldContact:
         }
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
-        """The solution with the error of cells and of what contact neglects, sections, contact, and
-        the range over the uncertain properties of the joint.
+        """The solution with the errors of the cells and of contact at cuts, the largest stress of
+        sections, the results of contact, and the range over the uncertain properties of the joint.
         """
         model, material, answer = self.model, self.problem.material, reading.answer
         (case,) = (c for c in self.problem.cases if c.case == reading.loads.case)
@@ -211,7 +218,9 @@ class HeldContact:
         return replace(solution, peak=peak, joint=joint, pressure=_pressure(contact))
 
     def _friction_torques(self, links: PinLoads) -> Floats | None:
-        """The largest torque of friction of each lug over the loads' instants, (B,) N m."""
+        """The largest friction torque of each lug over the instants, (B,) N m; None without
+        friction.
+        """
         if not rubs(self.model.lugs):
             return None
         return np.asarray(band_torques(self.model, self.contact.states(links)).max(axis=0))
@@ -219,8 +228,10 @@ class HeldContact:
     def _evidence(
         self, reading: StressReading, case: PinLoads, contact: JointContact, cells: float
     ) -> Evidence:
-        """The evidence of the surface, with the names of the whole pin instead of its rings, and
-        the relative error of the cells.
+        """The evidence of the surface, with names of bands instead of rings, and with the error of
+        the cells.
+
+        cells: that error, relative.
         """
         names = whole_names(self.model.whole, self.model.ends)
         of, zones = reading.evidence, []
@@ -251,9 +262,9 @@ class HeldContact:
         return lambda contact: compare(of.model, [contact], requirement, known, vary)[0]
 
     def _section(self, case: PinLoads, cells: float, requirement: Requirement) -> FoundSection:
-        """The largest stress of sections of a case.
+        """The largest stress of the sections in a case.
 
-        cells: its relative error from the cells.
+        cells: relative error of that stress from the cells.
         """
         between, loads = self.problem.between.get(case.case), self.contact.instants[case.case]
         return found_section(
@@ -272,9 +283,9 @@ class HeldContact:
         cells: tuple[float, float],
         requirement: Requirement,
     ) -> PartSearch:
-        """The search for the largest stresses of the parts of a pin with a hardened surface.
+        """The search for the largest stress in each part of a pin with a hardened surface.
 
-        cells: relative errors beneath the surface and of sections.
+        cells: relative errors of the cells, beneath the surface and of sections.
         """
         of, between = self.contact, self.problem.between.get(case.case)
         links, sections = of.instants[case.case], of.sections[case.case]
@@ -288,7 +299,8 @@ class HeldContact:
         )  # fmt: skip
 
     def _crushing(self, loads: PinLoads, at_row: JointContact) -> CaseCrushing | None:
-        """The stress beneath the pressures at the row's instant, and where a lug presses most.
+        """The crushing of the hardened case, the worst of the row's instant and of the instants at
+        which each lug presses most.
 
         loads: on the rings at all instants.
         """
@@ -299,7 +311,7 @@ class HeldContact:
         return case_crushing((at_row, *most), material.hardened, material.poisson_ratio)
 
     def _at_row(self, reading: StressReading, peak: Maximum, case: PinLoads) -> Solution:
-        """The solution with the loads at all samples of a case, at the instant of its row."""
+        """The solution with the loads at all instants of a case, at the instant of its row."""
         loads, links, instant = reading.loads, self.contact.press(case), reading.instant
         if loads.times is not None:
             assert peak.governing is not None
@@ -317,7 +329,10 @@ def _pressure(contact: JointContact) -> CellPressure:
 
 
 def links_at(problem: PinProblem, case: PinLoads, time: float | None) -> PinLoads:
-    """The loads of the links at an instant of a case, s; None without a motion."""
+    """The loads of the links at one instant of a case.
+
+    time: of the instant, s; None for a case without a motion, whose loads are returned as they are.
+    """
     between = problem.between.get(case.case)
     if time is None or case.times is None:
         return case
@@ -327,7 +342,9 @@ def links_at(problem: PinProblem, case: PinLoads, time: float | None) -> PinLoad
 
 
 def _imbalance(model: ContactModel, case: PinLoads) -> tuple[float, float] | None:
-    """The force and couple that the links leave unbalanced, relative; a structure reacts them."""
+    """The relative force and couple that the links leave unbalanced; None where a structure reacts
+    them.
+    """
     if model.on_structure:
         return None
     return imbalance(model.given, out_of_balance(model.given, case, model.material.density))

@@ -1,4 +1,4 @@
-"""Contact at one instant after the other, each from the most similar one before."""
+"""Contact at successive instants, each started from the most similar instant before."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fea.support.contact.contact_state import ContactState, rotation
 from pinbase.arrays import Floats, Mask
 
 EQUAL_LOAD_TOLERANCE = 1e-13  # relative: loads that differ by no more are the same
-LARGEST_FORCE_SHARE = 1.0 - 1e-6  # of the largest: a force that is as good as it
+LARGEST_FORCE_SHARE = 1.0 - 1e-6  # forces above this fraction of the largest are equally large
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class JointLoads:
     """The loads on a pin along x and y at each instant.
 
     forces: of the links, (T, L, 2) N.
-    couples: by anything but the lugs, (T, 2) N m.
+    couples: by everything but the lugs, (T, 2) N m.
     moments: of the links at each lug, (T, B, 2) N m.
     """
 
@@ -30,14 +30,14 @@ class JointLoads:
 
     @property
     def directions(self) -> list[float]:
-        """The angle, rad, of the largest force of each instant, the first of equal ones."""
+        """The angle of the largest force at each instant, rad; of equal forces the first counts."""
         size = np.linalg.norm(self.forces, axis=2)
         first = (size >= LARGEST_FORCE_SHARE * size.max(axis=1, keepdims=True)).argmax(axis=1)
         x, y = self.forces[np.arange(len(self.forces)), first].T
         return [float(angle) for angle in np.arctan2(y, x)]
 
     def turned(self, angles: Sequence[float]) -> JointLoads:
-        """The loads by their components along axes at these angles (T,), rad."""
+        """The components of the loads along axes that are turned by angles (T,), rad."""
         turns = np.stack([rotation(angle) for angle in angles])
         couples = np.einsum("ta,tab->tb", self.couples, turns)
         return JointLoads(self.forces @ turns, couples, self.moments @ turns)
@@ -50,10 +50,11 @@ def contact_at_instants(
     length: float,
     start: Mask | None = None,
 ) -> list[ContactState]:
-    """The contact at each instant, with cells that begin at angles (T,), rad.
+    """The contact at each instant.
 
-    length: of the pin, m, with which couples are compared with forces.
-    start: a guess of the cells (R, M) in contact at the first instant.
+    angles: of the middle of the first sector, (T,) rad.
+    length: of the pin, m, over which couples are compared with forces.
+    start: guess of the cells (R, M) in contact at the first instant.
 
     Raises: SolveError as `ContactProblem.solve`.
     """
@@ -62,7 +63,7 @@ def contact_at_instants(
     acting = np.concatenate([loads.forces, loads.moments / length], axis=1)
     sizes = np.abs(acting).max(axis=(1, 2))
     sizes[sizes == 0.0] = 1.0
-    # Without any gap, contact under loads in proportion is in proportion.
+    # Without any gap, contact is proportional to the loads.
     scale = sizes if contact.closed else np.full(len(sizes), sizes.max())
     like = np.concatenate([acting.reshape(len(acting), -1), arms], axis=1) / scale[:, None]
     states: list[ContactState] = []

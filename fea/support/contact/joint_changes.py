@@ -1,8 +1,7 @@
-"""Contact in joints that are changed: stress, and forces across the pin, relative to the joint as
-given.
+"""Contact in changed joints: stress and forces across the pin, relative to the joint as given.
 
-Contact is solved again with the flexibilities at hand, and all pressures act on one mesh, the
-first: its error is in all maxima alike, so that their ratios are compared.
+Contact is solved again with the known flexibilities. All pressures act on one mesh, the first,
+whose error is nearly the same in all maxima, so that the ratios of maxima are used.
 """
 
 from __future__ import annotations
@@ -49,18 +48,20 @@ from fea.support.lugs.lug import Lug
 from fea.support.records import Variation
 from pinbase.arrays import Mask
 
-# Of the largest amplitude: what a pattern must add to the pressures of a varied joint. Chosen by
-# judgement, coarser than MODE_TOLERANCE since only ratios of maxima follow from it.
+# A pattern whose amplitude in the pressures of varied joints is below this fraction of the largest
+# is left out. Chosen by judgement, coarser than MODE_TOLERANCE since only ratios of maxima depend
+# on it.
 VARIATION_MODE_TOLERANCE = 1e-2
 
-Cells = Literal["own", "large"]  # those of the model, or twice as large
+Cells = Literal["own", "large"]  # the cells of the model, or cells twice as large
 
 
 @dataclass(frozen=True)
 class VariedPressures:
-    """The pressures of a varied joint at an instant.
+    """The pressures of a varied joint at one instant.
 
-    lugs: with their clearance and tilt. waves: harmonics, (N + 1, 1, R, 2) Pa.
+    lugs: with the varied clearance and tilt.
+    waves: harmonics of the pressures, (N + 1, 1, R, 2) Pa.
     """
 
     lugs: tuple[Lug, ...]
@@ -69,13 +70,14 @@ class VariedPressures:
 
 @dataclass(frozen=True)
 class PressedJoint:
-    """The contact at an instant with something changed: the harmonics of its pressures, and the
-    cells.
+    """The contact of a joint at one instant.
 
-    per_arc: harmonics that the cells follow, times the half angle of contact in rad.
+    waves: harmonics of the pressures, (N + 1, 1, R, 2) Pa.
+    states: the contact on the cells.
+    per_arc: number of harmonics that the cells follow, times the half angle of contact in rad.
     lugs: of a varied joint.
-    cells: on which it is solved.
-    large: the same contact on large cells, where the arcs are too narrow for these.
+    cells: on which the contact is solved.
+    large: the same contact on large cells, if the arcs of contact are narrow.
     """
 
     waves: Floats
@@ -87,8 +89,8 @@ class PressedJoint:
 
     @property
     def with_rougher(self) -> tuple[PressedJoint, ...]:
-        """This joint, and on narrow arcs the one from which the error of the cells follows: on
-        large cells, if it is known on these, with half the harmonics.
+        """This joint; on narrow arcs also the joint with half the harmonics, which shows the error
+        of the cells. It is that on large cells, if it was solved on these.
         """
         if self.large is not None:
             return self, in_half_the_harmonics(self.large)
@@ -100,44 +102,49 @@ class PressedJoint:
 class ChangedContact:
     """A contact under some changes of the joint.
 
-    over: the ratios of those that could be solved. missing: the others, and why.
+    over: stress ratios for the changes that could be solved.
+    missing: the other changes, each with its reason.
     """
 
     over: tuple[Variation, ...] = ()
     missing: tuple[str, ...] = ()
 
 
-# The joint of a contact under each change that could be solved, and the others with the reasons.
+# The joint of a contact under each change that could be solved, and the other changes with reasons.
 JointsUnderChanges = tuple[list[tuple[JointChange, PressedJoint]], list[str]]
 
 
-# By contact, cells and gaps: the cells in contact of a joint, from which others begin.
+# The cells in contact with which the search starts, by number of the contact, cells and gaps.
 Touching = dict[tuple[int, Cells, bytes], Mask]
+# A function that returns the contact problem on some cells, and which rings belong to its rings.
 Problems = Callable[[Cells], tuple[ContactProblem, Floats]]
-# The joint as given on the cells of varied ones: its stress, the relative error, and the contact.
-LikeGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
+# The joint as given on the cells of the varied joints: stress, relative error from the cells, and
+# contact.
+AsGiven = tuple[AtPlaces, AtPlaces, PressedJoint]
 
 
 @dataclass(frozen=True)
 class JointChanges:
     """Contacts, each at one instant, whose joint is changed.
 
-    likes: for each contact, the joint as given on these cells.
-    cells: on which joints are solved. The second, if there are two, follow where the arcs of
-    contact are too narrow for the first.
+    at: the contacts with the joint as given.
+    as_given: for each contact, the joint as given on these cells.
+    cells: on which changed joints are solved. Second cells, if there are any, are used where the
+    arcs of contact are too narrow for the first.
     """
 
     model: ContactModel
     at: Sequence[JointContact]
     requirement: Requirement
-    likes: Sequence[Mapping[Cells, LikeGiven]]
+    as_given: Sequence[Mapping[Cells, AsGiven]]
     cells: tuple[Cells, ...]
 
     def by(
         self, changes: Sequence[Sequence[JointChange]], known: PressureModes
     ) -> tuple[list[ChangedContact], PressureModes]:
-        """Each contact under changes of its own, and the patterns of the pressures, with those that
-        are known.
+        """Return each contact under its own changes, and the patterns of all pressures.
+
+        known: existing patterns, which come first.
         """
         model = self.model
         every = self.joints(changes)
@@ -150,7 +157,7 @@ class JointChanges:
         ]
         stress = iter(at_places(model, self.requirement, loads) if any(loads) else [])
         out = []
-        for contact, like, (solved, missing) in zip(self.at, self.likes, every, strict=True):
+        for contact, like, (solved, missing) in zip(self.at, self.as_given, every, strict=True):
             over = [self._variation(contact, like[one.cells], change, one, stress)
                     for change, one in solved]  # fmt: skip
             out.append(ChangedContact(largest_of(over, low=min), tuple(missing)))
@@ -159,14 +166,14 @@ class JointChanges:
     def _variation(
         self,
         contact: JointContact,
-        like: LikeGiven,
+        like: AsGiven,
         change: JointChange,
         joint: PressedJoint,
         stress: Iterator[AtPlaces],
     ) -> Variation:
-        """The ratios of a contact under a change to that as given.
+        """The stress and force ratios of a contact under a change, relative to the joint as given.
 
-        stress: of this joint and those with rougher cells comes next.
+        stress: iterator whose next items belong to this joint (PressedJoint.with_rougher).
         """
         (*stress_given, given), model = like, self.model
         here = [next(stress) for _ in joint.with_rougher]
@@ -179,18 +186,19 @@ class JointChanges:
         )
 
     def joints(self, changes: Sequence[Sequence[JointChange]]) -> list[JointsUnderChanges]:
-        """The joint of each contact under its changes, and those that could not be solved.
+        """The joint of each contact under its changes, and the changes that could not be solved.
 
-        Lugs that are free to tilt may leave a couple on the pin, and contact may be lost in a large
-        clearance.
+        A change may have no solution: lugs that are free to tilt may leave a couple on the pin, and
+        contact may be lost in a large clearance.
         """
         out: list[JointsUnderChanges] = [([], []) for _ in self.at]
         wanted: dict[str, list[tuple[int, JointChange]]] = {}
         for k, of_contact in enumerate(changes):
-            for change in of_contact:  # each is one joint for all contacts
+            for change in of_contact:  # the same change of several contacts needs one model
                 wanted.setdefault(f"{change.what} {change.value}", []).append((k, change))
-        # Joints of the same gaps touch nearly the same cells, from which the next of them begins.
-        # For other gaps the usual first guess is nearer: it knows the width of contact.
+        # Joints with the same gaps touch nearly the same cells, so that each starts from the cells
+        # of the first. For other gaps the usual first guess, which estimates the width of contact,
+        # is nearer.
         gaps = self.model.bands.gap.tobytes()
         touching = {
             (k, on, gaps): self._given(k, on) for k in range(len(self.at)) for on in self.cells
@@ -211,9 +219,11 @@ class JointChanges:
     def _on_cells_that_follow(
         self, k: int, other: ContactModel, problems: Problems, touching: Touching
     ) -> list[PressedJoint]:
-        """A contact in another joint, on the first cells if they follow the arcs of contact, else
-        on the model's own. Where these do not follow either, both count, since either error may be
-        too small. The arguments are as of `_joint`.
+        """The contact in another joint, on the cells that follow its arcs of contact.
+
+        These are the first cells if they follow the arcs, otherwise the model's own cells. If the
+        own cells do not follow them either, both contacts count, since the error of either may be
+        estimated too small. The arguments are those of `_joint`.
         """
         first, *more = self.cells
         joint = self._joint(k, other, first, problems, touching)
@@ -227,11 +237,13 @@ class JointChanges:
     def _joint(
         self, k: int, other: ContactModel, cells: Cells, problems: Problems, touching: Touching
     ) -> PressedJoint:
-        """A contact in another joint on some cells.
+        """The contact in another joint on some cells.
 
-        problems: gives the contact problem of the other joint on cells, as `on_coarser_cells`.
-        touching: the cells in contact from which the search begins; the first result of other gaps
-        is added.
+        k: number of the contact.
+        other: model of the other joint.
+        problems: returns the contact problem of the other joint on cells.
+        touching: cells in contact with which the search starts; the first result for other gaps is
+        added.
         """
         contact, like = self.at[k], (k, cells, other.bands.gap.tobytes())
         joint = on_cells(other, contact.loads.links, *problems(cells), touching.get(like))
@@ -241,20 +253,21 @@ class JointChanges:
         return replace(joint, per_arc=per_arc, lugs=other.lugs, cells=cells)
 
     def _given(self, k: int, cells: Cells) -> Mask:
-        """The cells in contact in the joint as given."""
-        states = self.at[k].contact if cells == "own" else self.likes[k][cells][2].states
+        """The cells in contact in the joint as given, on own cells or on cells twice as large."""
+        states = self.at[k].contact if cells == "own" else self.as_given[k][cells][2].states
         return states[0].active
 
 
 def largest_of(
     every: Iterable[Variation], low: Callable[[Iterable[float]], float] = max
 ) -> tuple[Variation, ...]:
-    """The variations of a case whose joint is varied more than once: of each change the largest
+    """The variations of a case whose joint is varied more than once: for each change the largest
     stress and forces.
 
-    every: relative to the same stress.
-    low: the low end of an interval from those of all: at several instants the largest of these is
-    at least `max`, on several sets of cells at one instant `min`.
+    every: all variations, relative to the same stress.
+    low: combines the lower ends of intervals. At several instants it is `max`, since the largest
+    stress is at least that of any instant; for several sets of cells at one instant it is `min`,
+    since any of them may be right.
     """
     of = dict[tuple[str, str], list[Variation]]()
     for x in every:
@@ -265,7 +278,7 @@ def largest_of(
 def _largest(alike: Sequence[Variation], low: Callable[[Iterable[float]], float]) -> Variation:
     ends = [x.interval or (x.max_von_mises, x.max_von_mises) for x in alike]
     least, most = low(end for end, _ in ends), max(end for _, end in ends)
-    # Without an interval of its own the largest has the error of the row.
+    # A variation without an interval of its own has the error of the row.
     plain = max((x.max_von_mises for x in alike if x.interval is None), default=0.0)
     lugs = dict[str, float]()
     for name, ratio in (pair for x in alike for pair in x.lugs):
@@ -282,7 +295,7 @@ def _largest(alike: Sequence[Variation], low: Callable[[Iterable[float]], float]
 
 
 def loaded(model: ContactModel, joint: PressedJoint, contact: JointContact) -> LoadedJoint:
-    """A varied joint with the resultants of its pressures on the rings."""
+    """A joint with the resultants of its pressures on the rings."""
     loads = resultants(model.pin, model.rings, joint.waves, contact.loads.links)
     return LoadedJoint(model.pin, model.lugs, model.bands, loads, contact.mass)
 
@@ -294,13 +307,14 @@ def _ratio(
     rings: int,
     per_arc: float,
 ) -> Variation:
-    """The variation with its stresses relative to those of the joint as given, and with the error
-    of the cells where that of the row as given does not hold: on narrow arcs, and where the surface
-    governs instead of a section, which the cells hardly change.
+    """The variation with its stresses relative to those of the joint as given.
 
+    The variation has an error of its own where the row's error from the cells does not cover it: on
+    narrow arcs, and where the surface governs instead of a section, whose stress hardly depends on
+    the cells.
     stress: with the variation; on narrow arcs also with half the harmonics.
-    given: of the joint as given, on the same cells, and its relative error.
-    rings, per_arc: as of `_by_cells`.
+    given: stress of the joint as given, on the same cells, and its relative error.
+    rings, per_arc: as in cell_error.by_cells.
     """
     (varied, *half), (like, like_error) = stress, given
     row, interval = like.row or 1.0, None
@@ -333,9 +347,10 @@ def at_places(
     every: Sequence[Sequence[PressureLoads]],
     unread: tuple[Zone, ...] = (),
 ) -> list[AtPlaces]:
-    """The stress at the places on the first mesh, of loads of one instant each.
+    """The stress at the places on the first mesh, for each of the loads, which have one instant
+    each.
 
-    unread: zones that are not read, about which the mesh is no finer.
+    unread: further zones that are not read, but near which the mesh is not refined.
     """
     whole = stacked(list(itertools.chain(*every)))
     singular = singularities_of(model.pin, model.material, (), (whole,), requirement.distance)
@@ -358,14 +373,17 @@ def on_cells(
     belongs: Floats,
     start: Mask | None = None,
 ) -> PressedJoint:
-    """The contact on other cells; the arguments as of `on_coarser_cells` and `pressed`."""
+    """The contact on other cells, expressed on the rings of the model.
+
+    problem, belongs: as from `on_coarser_cells`. links, start: as in ContactModel.pressed.
+    """
     states = model.pressed(links, problem, start)
     states = [replace(x, pressure=belongs @ x.pressure) for x in states]
     return PressedJoint(model.waves(states), states)
 
 
 def in_half_the_harmonics(joint: PressedJoint) -> PressedJoint:
-    """The joint with the lower half of its harmonics alone, as many as half the sectors resolve."""
+    """The joint with only the lower half of its harmonics, which half the sectors would resolve."""
     waves = joint.waves.copy()
     waves[(len(waves) + 1) // 2 :] = 0.0
     return replace(joint, waves=waves)

@@ -17,8 +17,8 @@ from pinbase.arrays import Floats
 class JointContact(LoadedJoint):
     """The contact of a pin in its lugs in one case.
 
-    angles: of the cells, rad.
-    contact: by instant.
+    angles: of the middles of the sectors from the first one, rad.
+    contact: at each instant.
     """
 
     loads: PressureLoads
@@ -27,7 +27,7 @@ class JointContact(LoadedJoint):
 
     @property
     def contact_angle(self) -> Floats:
-        """Half angle of contact, (T, B) rad, at the ring of each band where it is largest."""
+        """The half angle of contact at each band's ring where it is largest, (T, B) rad."""
         sector = self.angles[1] - self.angles[0]
         cells = np.stack([(state.pressure > 0.0).sum(axis=1) for state in self.contact])
         return self.bands.largest(0.5 * sector * cells)
@@ -41,12 +41,13 @@ class JointContact(LoadedJoint):
         return self.bands.largest(np.stack([x.pressure.max(axis=1) for x in self.contact]))
 
     def half_angle(self, bands: Bands, tail: Floats) -> float:
-        """The half angle of contact, rad, at the ring that is pressed most at the first instant,
-        whatever the cells: the plane contact of a wide gap, at most a right angle.
+        """The half angle of contact, rad, where a ring is pressed most at the first instant.
 
-        bands, tail: of the model of this contact (ContactModel), or of one with other gaps.
+        It is that of plane contact with a wide gap, at most a right angle, so that it does not
+        depend on the cells.
+        bands, tail: of the model of this contact (ContactModel), or of a model with other gaps.
         """
-        # Rings under rounded edges have the gap of the others, which hold them off.
+        # Rings under rounded edges count with the smallest gap of their band.
         load, gap = np.linalg.norm(self.line_load[0], axis=1), np.full(len(self.lugs), np.inf)
         np.minimum.at(gap, bands.band, bands.gap)
         half = wide_gap_half_angle(load, 4.0 * bands.radius / tail * gap[bands.band])

@@ -1,4 +1,4 @@
-"""Load per length, moments and contact of a pin's bands at one instant, as results show them."""
+"""The line loads, moments and contact of a pin's bands at one instant, in the form of results."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ def contact_result(
 ) -> JointResult:
     """The joint result of a contact at a single instant.
 
-    case: loads of the rings on the pin at all instants.
-    remark: what the range leaves out.
-    torques: the largest of friction over all instants, by lug, (B,) N m.
+    over: range over the joint.
+    case: loads on the rings at all instants.
+    remark: variations that the range leaves out.
+    torques: largest friction torque of each lug over all instants, (B,) N m; None without friction.
     """
     bands = []
     for b, lug in enumerate(contact.lugs):
@@ -52,9 +53,10 @@ def joint_result(
 def band_contact(
     joint: LoadedJoint, b: int, contact_angle: float, turning: Floats | float = 0.0
 ) -> BandContact:
-    """A band, by its number, at the single instant of a joint, but for friction.
+    """The contact of band number b at the single instant of a joint, without friction.
 
-    contact_angle: degrees. turning: what loads that vary along rings add to the couple, (2,) N m.
+    contact_angle: half angle of contact, degrees.
+    turning: couple of loads that vary along rings, (2,) N m.
     """
     lug, bands = joint.lugs[b], joint.bands
     on_band = bands.band == b

@@ -1,11 +1,11 @@
 """The cells in contact by descent of the energy, which ends from any start.
 
-Cells that push a pin, held on springs, minimise a strictly convex energy over pressures that are
-not negative. The active set here only ever steps to less energy, so that it meets no set of cells
-twice, and there are finitely many; where round-off decides what is less, the steps are counted
-instead. It takes more steps than the one of
-fea.support.contact.contact, which may run in circles where hardly more cells touch than hold the
-pin.
+The forces of the cells on a pin that is held by springs minimise a strictly convex energy under the
+constraint that none is negative. The active set here steps only to lower energy. It therefore meets
+no set of cells twice, and it ends, since there are finitely many sets. Where round-off decides
+which energy is lower, a limit on the number of minima ends it instead. It takes more steps than the
+active set of fea.support.contact.contact, which may cycle where barely more cells touch than are
+needed to hold the pin.
 
 Source: Lawson & Hanson, Solving Least Squares Problems (1974), chapter 23 (nonnegative least
 squares), here with several cells a step, as long as they take energy away.
@@ -20,16 +20,17 @@ import numpy as np
 from fea.core.linear_solver import SolveError
 from pinbase.arrays import Floats, Mask
 
-# Of the largest gap or the step: a smaller overlap is round-off, and cells within it of the first
-# one that opens open together.
+# An overlap below this fraction of the largest gap is round-off. Cells that open within this
+# fraction of a step after the first one open together with it.
 ROUND_OFF = 1e-12
-# Minima met before the descent is given up, per cell. Of 400 random light loads none met more than
-# 0.08, and nonnegative least squares is commonly given 3.
+# Minima per cell after which the descent is given up. None of 400 random light loads took more than
+# 0.08; for nonnegative least squares a limit of 3 is usual.
 MAX_MINIMA_PER_CELL = 1.0
 FEASIBLE_RESIDUAL = 1e-6  # of the largest resultant: ten times the tolerance of HiGHS
 
 
-# Forces (U,), N, over given cells in contact, and what gives the gaps (U,), m, under them.
+# A function that returns, for given cells in contact, the forces (U,), N, of least energy and a
+# function for the gaps (U,), m.
 Least = Callable[[Mask], tuple[Floats, Callable[[], Floats]]]
 
 
@@ -39,18 +40,18 @@ def unsettled() -> SolveError:
 
 
 def require_forces(resultants: Floats, required: Floats) -> None:
-    """Raise unless some forces of the cells, none of them negative, have the required resultants.
+    """Raise an error unless non-negative forces of the cells exist with the required resultants.
 
-    resultants: of a unit force of each cell, (Y, U).
-    required: (Y,), the largest of them 1.
+    resultants: of a unit force on each cell, (Y, U).
+    required: required resultants, (Y,), scaled so that the largest is 1.
 
     Raises: SolveError.
     """
     from scipy.optimize import linprog  # takes long to import
 
-    # By the least sum of residuals, a linear program. `scipy.optimize.nnls` is not to be trusted
-    # here: from SciPy 1.15 on it returns a residual of 0.0 for resultants that no forces have
-    # (scipy/scipy#25389), and the descent then has no minimum to end at.
+    # The smallest sum of absolute residuals is a linear program. `scipy.optimize.nnls` cannot be
+    # used: from SciPy 1.15 on it returns a residual of 0.0 for resultants that no forces have
+    # (scipy/scipy#25389), and the descent would then have no minimum.
     count, cells = resultants.shape
     residual = np.hstack([np.eye(count), -np.eye(count)])
     least = linprog(
@@ -72,16 +73,16 @@ def least_energy_cells(
     force: Floats,
     least: Least,
     energy: Callable[[Floats], float],
-    chosen: Callable[[Floats, Mask, Mask], Mask],
+    cells_to_close: Callable[[Floats, Mask, Mask], Mask],
 ) -> tuple[Mask, Floats]:
     """The cells (U,) in contact where the energy is least, and their forces (U,), N.
 
-    force: any to begin with, (U,) N, none of them negative.
-    least: forces (U,) N, of any sign, with which the energy is least over given cells in contact,
-    and what gives their gaps (U,) m.
-    energy: of forces (U,).
-    chosen: which of the cells that overlap to close at once, by gaps, overlapping cells and cells
-    in contact.
+    force: initial forces, (U,) N, none of them negative.
+    least: returns the forces (U,) N, of any sign, that minimise the energy over given cells in
+    contact, and a function for the gaps (U,) m.
+    energy: returns the energy of forces (U,).
+    cells_to_close: returns the cells to close together, from gaps, overlapping cells and cells in
+    contact.
 
     Raises: SolveError where round-off hides the minimum.
     """
@@ -93,9 +94,9 @@ def least_energy_cells(
             return active, force
         deepest = np.zeros_like(active)
         deepest[int(np.where(overlaps, gap, np.inf).argmin())] = True
-        # Closing the deepest cell alone always takes energy away; closing several may not, where
-        # all of them open again.
-        for closing in (chosen(gap, overlaps, active), deepest):
+        # Closing several cells may not lower the energy, since all of them may open again. Closing
+        # the deepest cell alone always does.
+        for closing in (cells_to_close(gap, overlaps, active), deepest):
             next_active, next_force, gap = _descent(active | closing, force, least, energy)
             if next_active.tobytes() not in minima:
                 break
@@ -109,8 +110,9 @@ def least_energy_cells(
 def _descent(
     active: Mask, force: Floats, least: Least, energy: Callable[[Floats], float]
 ) -> tuple[Mask, Floats, Floats]:
-    """The cells, forces and gaps of a minimum over some of the given cells, reached from forces
-    that are not negative.
+    """The cells, forces and gaps of a minimum over a subset of the given cells.
+
+    force: initial forces, (U,) N, none of them negative.
     """
     active, now = active.copy(), energy(force)
     while True:
@@ -118,12 +120,13 @@ def _descent(
         opening = np.flatnonzero(active & (minimum <= 0.0))
         if not len(opening):
             return active, minimum, gaps()
-        # All cells that would pull open at once where that takes energy away.
+        # All cells that would pull are opened at once if that lowers the energy.
         clipped = np.maximum(minimum, 0.0)
         if (after := energy(clipped)) < now:
             active[opening], force, now = False, clipped, after
             continue
-        # Else as far towards the minimum as no cell pulls; the first one that would is opened.
+        # Otherwise the forces move towards the minimum until the first of these cells has no force;
+        # that cell opens.
         step = np.zeros(len(opening))
         loaded = force[opening] > 0.0
         at = opening[loaded]

@@ -1,6 +1,7 @@
-"""Contact of a pin with its lugs in several cases, at any of their instants, each solved once.
+"""Contact of a pin with its lugs in several load cases, with each instant solved once.
 
-It also tells how far stress depends on the cells and on the uncertain properties of the joint.
+The module also estimates how much the stress depends on the cells and on the uncertain properties
+of the joint.
 """
 
 from __future__ import annotations
@@ -41,21 +42,23 @@ from fea.support.contact.variations import (
 )
 from fea.support.records import JointRange
 
-# Of the largest stress on the first mesh: an instant above it may govern on finer meshes. Chosen by
-# judgement, with room for the error of the first mesh.
+# Fraction of the largest stress on the first mesh above which an instant may govern on finer
+# meshes. Chosen by judgement, with room for the error of the first mesh.
 CANDIDATE_FRACTION = 0.8
-# Of the largest load: how far an instant that is left out at first may be off the chord between its
-# neighbours. Chosen by judgement; instants are added later where the maximum may lie between two.
+# Deviation, relative to the largest load, of an instant that is left out at first from the chord
+# between its neighbours. Chosen by judgement; instants are added later where the maximum may lie
+# between two instants.
 CHORD_TOLERANCE = 0.01
-# Intervals to begin with. Chosen by judgement; with the middles they are 33 instants, and 21 or
-# more give the maximum of the landing gear's pins to 0.02 % (docs/measured/instants.md).
+# Number of intervals at the start. Chosen by judgement; with the middles they make 33 instants, and
+# 21 or more give the maximum of the landing gear's pins to 0.02 % (docs/measured/instants.md).
 MIN_INTERVALS = 16
-# Of an error of the cells: the least that the next cells leave. From the first cells to the second
-# 0.24 to 0.46 were left of that of the landing gear's pins, as they are and sized for factor 10.
+# Smallest fraction of the cells' error that remains on the next cells. From the first cells to the
+# second, 0.24 to 0.46 of the error remained on the landing gear's pins, both as designed and sized
+# for a factor of 10.
 LEAST_FALL = 0.2
-# Of the largest stress of a pin's cases, each times its required factor: a case that surely has
-# less, with the errors of both, is minor. Chosen by judgement: it is judged by its own factor all
-# the same, with an error that may be large.
+# Fraction of the largest product of stress and required factor over a pin's cases. A case whose
+# product is certainly below this fraction, with the errors of both, is minor. Chosen by judgement:
+# a minor case is still judged by its own factor, with an error that may be large.
 MINOR_SHARE = 0.5
 
 
@@ -63,8 +66,8 @@ MINOR_SHARE = 0.5
 class Candidates:
     """The instants of a case that may govern, by the stress on the first mesh.
 
-    instant: of the largest stress of the surface.
-    may: (T,), true where the stress is so near to the largest that the instant may govern.
+    instant: number of the instant at which the surface has its largest stress.
+    may: mask (T,) of the instants whose stress is near enough to the largest to govern.
     """
 
     instant: int
@@ -82,12 +85,14 @@ class Compared:
 
     @property
     def _both(self) -> tuple[ResolutionComparison, ...]:
-        """Both, or one where surface and sections have their largest stress at one instant."""
+        """Both comparisons, or one where surface and sections peak at the same instant."""
         return (self.surface, self.section)[: 1 + (self.surface is not self.section)]
 
     def joint_range(self, largest: float, below: float) -> JointRange:
-        """The range over the joint of the maximum and of the stress beneath contact, Pa, at both
-        instants: what is smaller as given may grow more.
+        """The range over the joint of the maximum and of the stress beneath contact.
+
+        Both instants count: the stress that is smaller with the joint as given may grow more.
+        largest, below: the maximum and the stress beneath contact with the joint as given, Pa.
         """
         every = self._both
         case = AtPlaces(
@@ -105,20 +110,20 @@ class Compared:
 
     @property
     def half_angle(self) -> float:
-        """The smaller half angle of contact of both, rad."""
+        """The smaller half angle of contact at the two instants, rad."""
         return min(self.surface.half_angle, self.section.half_angle)
 
     def fine(self, material: Material, requirement: Requirement) -> bool:
-        """Return whether finer cells would not help.
+        """Return whether finer cells are unnecessary.
 
-        They would not if the error of the cells is a small part of the tolerance, or if the
-        required factor is decided whatever the cells, also for the stress beneath the contact.
+        They are if the error of the cells is a small part of the tolerance, or if the required
+        factor is decided in spite of that error, also for the stress beneath contact.
         """
         if self.precise(requirement):
             return True
         error, largest = self._error(), self._largest()
-        # Otherwise a decision is enough: for the row, and for the stress beneath contact, unless
-        # the row alone already exceeds the limit.
+        # Otherwise a decision is enough: for the row, and for the stress beneath contact. The
+        # latter does not matter where the row alone already exceeds the limit.
         low, high = largest / (1.0 + error), largest * (1.0 + error)
         below, beneath_factor = self.surface.stress.beneath, 1.0 + self.surface.cells.beneath
         return decided(requirement, material, low, high) and (
@@ -132,29 +137,29 @@ class Compared:
 
     @property
     def range(self) -> tuple[float, float]:
-        """The least and the largest that the maximum may be with the error of the cells, Pa; the
-        largest also beneath the contact.
+        """The lower and upper bound of the maximum with the error of the cells, Pa; the upper bound
+        includes the stress beneath contact.
         """
         error, beneath = 1.0 + self._error(), self.surface.stress.beneath
         deepest = beneath * (1.0 + self.surface.cells.beneath)
         return self._largest() / error, max(self._largest() * error, deepest)
 
     def far_from(self, requirement: Requirement) -> bool:
-        """Return whether the next cells will not be fine either where a value is wanted, so that
-        those after them are better taken at once.
+        """Return whether a value is wanted and the next cells will not be fine enough either, so
+        that they are better skipped.
         """
         allowed = CELL_ERROR_SHARE * requirement.tolerance
         return requirement.goal == "value" and LEAST_FALL * self._error() > allowed
 
     def _largest(self) -> float:
-        """The larger of the stress of surface and section, Pa."""
+        """The larger of the stresses of surface and section, Pa; 1 where both are zero."""
         return max(self.surface.stress.surface, self.section.stress.section) or 1.0
 
     def _error(self) -> float:
-        """The relative error that cells cause in the row, the larger of surface and section.
+        """The relative error that the cells cause in the row, the larger of surface and section.
 
-        It is that of the place that governs now, or of the other one if the error of its cells
-        lifts it above.
+        It is the error of the place that governs. If the error of the other place lifts that place
+        above, the rise counts.
         """
         both = (self.surface, "surface"), (self.section, "section")
         stress = {name: float(getattr(x.stress, name)) for x, name in both}
@@ -169,14 +174,17 @@ class Compared:
         case: PinLoads,
         anew: Callable[[JointContact], ResolutionComparison],
     ) -> Compared:
-        """The comparisons with the surface's made anew at another instant, unless that is near."""
+        """The comparisons for another instant of the surface.
+
+        The surface is compared anew there, unless the instant is near the one compared before.
+        """
         if self.surface.is_at(contact.loads.links, case):
             return self
         return replace(self, surface=anew(contact))
 
 
 def with_minor(requirement: Requirement, compared: Mapping[str, Compared]) -> Requirement:
-    """The requirement with the minor cases of those compared, unless every maximum is wanted."""
+    """The requirement with the minor cases among those compared, unless every maximum is wanted."""
     if requirement.every or requirement.goal == "decide":
         return requirement
     used = dict[str, tuple[float, float]]()
@@ -192,12 +200,14 @@ def with_minor(requirement: Requirement, compared: Mapping[str, Compared]) -> Re
 
 
 class PressedCases:
-    """The pressures of all cases at any time, each solved once.
+    """The pressures of all cases at any time, with each instant solved once.
 
-    Pressures made of the same patterns act on one mesh.
-    instants: by case, the loads of which the patterns are made.
-    failed: the error of each case without contact.
-    patterns: those of any pressures; None: they are made from the pressures of the cases.
+    All pressures are made of the same patterns, so that they act on one mesh.
+    others: for each case, other loads whose pressures the patterns must reproduce.
+    instants: for each case, the loads from whose pressures the patterns are made.
+    failed: for each case without contact, the error.
+    patterns: complete set of patterns for any pressures; None: patterns are made from the pressures
+    of the cases.
     """
 
     def __init__(
@@ -205,7 +215,7 @@ class PressedCases:
         model: ContactModel,
         cases: tuple[PinLoads, ...],
         between: Mapping[str, Between],
-        besides: Mapping[str, PinLoads],
+        others: Mapping[str, PinLoads],
         cut: bool,
         patterns: PressureModes | None = None,
     ) -> None:
@@ -214,18 +224,18 @@ class PressedCases:
         self.failed: dict[str, SolveError] = {}
         self.instants: dict[str, PinLoads] = {}
         self._known: dict[tuple[str, float], ContactState] = {}
-        self._besides: dict[str, Floats] = {}
+        self._other_waves: dict[str, Floats] = {}
         self.patterns = patterns
         self.sections: dict[str, SectionField] = {}
-        # Contact of all cases comes first: patterns and sections are made from all of it, and a
-        # case without contact must not stop the others.
+        # Contact of all cases is solved first, since the patterns are made from all of it. A case
+        # without contact must not stop the others.
         for case in cases:
             instants = _instants(case, between.get(case.case))
             try:
                 self.states(instants)
-                if case.case in besides:
-                    states = model.pressed(besides[case.case])
-                    self._besides[case.case] = model.waves(states)
+                if case.case in others:
+                    states = model.pressed(others[case.case])
+                    self._other_waves[case.case] = model.waves(states)
             except SolveError as error:
                 self.failed[case.case] = error
                 continue
@@ -234,17 +244,17 @@ class PressedCases:
             self.sections[case.case] = SectionField(model.pin, model.material, (), rings)
 
     def all_instants(self) -> dict[str, Candidates]:
-        """The candidates of each case, if every instant may govern."""
+        """The candidates of each case where every instant may govern."""
         every = self.instants.items()
         return {case: Candidates(0, np.ones(len(links), bool)) for case, links in every}
 
     def near(self, requirement: Requirement) -> dict[str, Candidates]:
-        """The candidates of each case, by the approximate stress of all instants on the first
+        """The candidates of each case, from the approximate stress at all instants on the first
         mesh.
         """
         if all(len(links) == 1 for links in self.instants.values()):  # nothing to choose from
             return self.all_instants()
-        # Rough patterns of all instants, since it is not known yet which may govern.
+        # All instants get rough patterns, since it is not known yet which of them may govern.
         self.follow(
             {case: Candidates(0, np.zeros(len(x), bool)) for case, x in self.instants.items()}
         )
@@ -269,8 +279,8 @@ class PressedCases:
         return out
 
     def follow(self, near: Mapping[str, Candidates]) -> None:
-        """Make the patterns: accurate ones for instants that may govern, rough ones for others."""
-        parts = [(waves, MODE_TOLERANCE) for waves in self._besides.values()]
+        """Make the patterns: accurate for instants that may govern, rough for the others."""
+        parts = [(waves, MODE_TOLERANCE) for waves in self._other_waves.values()]
         for case, links in self.instants.items():
             waves, may = self.model.waves(self.states(links)), near[case].may
             parts += [(waves[:, may], MODE_TOLERANCE), (waves[:, ~may], ROUGH_MODE_TOLERANCE)]
@@ -278,10 +288,10 @@ class PressedCases:
             self.patterns = self.model.patterns(parts, self.patterns)
 
     def states(self, links: PinLoads) -> list[ContactState]:
-        """The contact at the loads' instants."""
+        """The contact at the instants of the loads."""
         if links.times is None:
             return self.model.pressed(links)
-        # Only new times are solved, all at once: neighbours are the start of each other.
+        # Only new times are solved, all at once, so that each starts from a neighbour.
         keys = [(links.case, t) for t in links.times.tolist()]
         new = [i for i, key in enumerate(keys) if key not in self._known]
         if new:
@@ -296,7 +306,7 @@ class PressedCases:
         return self.patterns.loads(self.model.waves(states), links, self.model.arcs(states))
 
     def on_rings(self, links: PinLoads) -> PinLoads:
-        """The resultants of the pressures on the rings under loads of the links."""
+        """The resultants of the pressures on the rings, under loads of the links."""
         states = self.states(links)
         return resultants(self.model.pin, self.model.rings, self.model.waves(states), links)
 
@@ -310,7 +320,8 @@ class PressedCases:
         """The comparisons of each case, at the instants of the largest stress of the surface on the
         first mesh and of sections.
 
-        finest: whether there are no finer cells. The joint is varied where these are not needed.
+        finest: whether there are no finer cells. The joint is varied only in cases for which no
+        finer cells follow.
         """
         at, of_case, pairs = self._at_peaks(near)
 
@@ -329,7 +340,7 @@ class PressedCases:
     def uncompared(
         self, near: Mapping[str, Candidates], requirement: Requirement
     ) -> dict[str, Compared]:
-        """The instants that would be compared, without any comparison of cells."""
+        """The instants that `compared` takes, without a comparison of cells."""
         assert self.patterns is not None
         at, _, pairs = self._at_peaks(near)
         return pairs(uncompared(self.model, at, requirement, self.patterns))
@@ -341,8 +352,8 @@ class PressedCases:
         list[str],
         Callable[[Sequence[ResolutionComparison]], dict[str, Compared]],
     ]:
-        """Contact at the instants of the largest stress of surface and sections, the case of each,
-        and what makes of their comparisons those of the cases.
+        """Return the contact at the instants of the largest stress of surface and sections, the
+        case of each contact, and a function that groups comparisons of these contacts by case.
         """
         at, of_case, which = list[JointContact](), list[str](), dict[str, list[int]]()
         for case, links in self.instants.items():
@@ -364,15 +375,15 @@ class PressedCases:
 
 
 def _instants(case: PinLoads, between: Between | None) -> PinLoads:
-    """The instants of a case to begin with.
+    """The initial instants of a case.
 
-    A motion has those between which its loads are linear, and the middles between each two. More
-    are added where the maximum may lie between them (fea.core.over_time).
+    A motion has the instants between which its loads are nearly linear, and the middles of these
+    intervals. More are added where the maximum may lie between them (fea.core.over_time).
     """
     if between is None or case.times is None or len(case) < 2:
         return case
-    # Contact is not linear in the loads even where these are linear in time, so that middles are
-    # needed, too.
+    # Contact is not linear in the loads, even where the loads are linear in time. Therefore the
+    # middles are needed, too.
     case = case.at(knots(case, CHORD_TOLERANCE, MIN_INTERVALS))
     assert case.times is not None
     return case.merged(between(0.5 * (case.times[1:] + case.times[:-1])))

@@ -1,8 +1,8 @@
-"""Loads on a pin whose bands are cut into rings: pressures from contact, by harmonic.
+"""Contact pressures as loads on a pin whose bands are cut into rings, harmonic by harmonic.
 
-Pressures of neighbouring instants are much alike: of each harmonic a few patterns over the rings
-make up all of them (their singular vectors), so that the unit loads are as few as with prescribed
-pressures, however many rings there are.
+Pressures at neighbouring instants are similar. A few patterns over the rings for each harmonic, the
+singular vectors of the pressures, therefore make up all of them, and there are as few unit loads as
+with prescribed pressures, however many rings there are.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ from geometry import Pin
 from geometry.shape.pin import SHOULDER
 from geometry.shape.rings import ringed_name
 
-MODE_TOLERANCE = 2e-3  # of the largest amplitude: what a pattern must add to any instant's
+# A pattern whose amplitude at every instant is below this fraction of the largest is left out.
+MODE_TOLERANCE = 2e-3
 ROUGH_MODE_TOLERANCE = 3e-2  # the same for instants that cannot govern
-# Of the largest even pressure: a smaller uneven part is round-off of a press fit without load.
+# Fraction of the largest mean pressure (n = 0) below which the pressure of harmonic 1 is round-off
+# of a press fit without load.
 EVEN_PRESSURE_ROUND_OFF = 1e-13
 
 
@@ -31,11 +33,11 @@ EVEN_PRESSURE_ROUND_OFF = 1e-13
 class PressureLoads(PinLoads):
     """Loads on the rings of a pin, made of patterns of pressure.
 
-    acting: the amounts (T, 2) of every unit load, by phase.
+    acting: amount of each unit load by phase, (T, 2).
     forces: resultants of the pressures on the rings, and the shares of axial forces; after the
     rings come other surfaces that take axial forces.
-    of_links: the loads of the links that the pressures carry, at the same instants.
-    squeezing: the largest force, N, by which even pressures press all bands together.
+    of_links: loads of the links that the pressures carry, at the same instants.
+    squeezing: largest sum over all rings of the mean pressure times the ring's area, N.
     """
 
     acting: Mapping[UnitLoad, Floats] = field(default_factory=dict)
@@ -58,14 +60,14 @@ class PressureLoads(PinLoads):
 
     @property
     def in_sections(self) -> LoadAmounts:
-        """The loads `on_rings`, and the shears along the axis and about it that sections feel."""
+        """The loads `on_rings`, and the shears along and about the axis that act on sections."""
         shear = {u: x for u, x in self.acting.items() if u.kind in ("axial", "around") and u.n < 2}
         return LoadAmounts(
             self.case, {**self.on_rings.coefficients(), **shear}, len(self), self.pressed
         )
 
     def coefficients(self) -> Mapping[UnitLoad, Floats]:
-        """The amount of each unit load, (T, 2) by phase."""
+        """The amount of each unit load by phase, (T, 2)."""
         return self.acting
 
     def at(self, instants: NDArray[np.int64]) -> PressureLoads:
@@ -76,7 +78,7 @@ class PressureLoads(PinLoads):
         return replace(some, acting=acting, of_links=self.links.at(instants))
 
     def merged(self, other: PinLoads) -> PressureLoads:
-        """The loads with the instants of other loads of the same motion, in the order of time."""
+        """The loads with the instants of other loads of the same motion added, in order of time."""
         assert isinstance(other, PressureLoads)
         assert self.times is not None
         assert other.times is not None
@@ -101,12 +103,11 @@ class PressureModes:
     def loads(
         self, waves: Floats, links: PinLoads, pressed: PressedArcs | None = None
     ) -> PressureLoads:
-        """The loads of pressures on the rings, made of these patterns, and of the links' other
-        loads.
+        """The loads of pressures on the rings, made of these patterns, and the links' other loads.
 
         waves: harmonics of the pressures, (N + 1, T, R, 2) Pa.
-        links: their surfaces are the bands that the rings cut; axial forces and torques, even over
-        a band's rings, and the body force are taken from them.
+        links: loads of the links, whose surfaces are the uncut bands; they give the axial forces,
+        the torques and the body force.
         pressed: where the pressures act.
         """
         ring_loads = resultants(self.pin, self.rings, waves, links)
@@ -131,9 +132,9 @@ class PressureModes:
     def amounts(
         self, waves: Floats, kind: Literal["pressure", "axial"] = "pressure"
     ) -> dict[UnitLoad, Floats]:
-        """The amount (T, 2) of each pattern in harmonics (N + 1, T, R, 2), Pa.
+        """The amount of each pattern by phase, (T, 2), in harmonics (N + 1, T, R, 2) Pa.
 
-        kind: of the tractions.
+        kind: direction of the traction.
         """
         out: dict[UnitLoad, Floats] = {}
         for n, (wave, patterns) in enumerate(zip(waves, self.by_harmonic, strict=True)):
@@ -153,7 +154,9 @@ class PressureModes:
         )
 
     def left_out(self, waves: Floats) -> float:
-        """The largest part, relative, of harmonics (N + 1, T, R, 2) that these patterns miss."""
+        """The largest amplitude that these patterns miss of harmonics (N + 1, T, R, 2), relative to
+        the largest amplitude.
+        """
         largest, missed = float(np.abs(waves).max(initial=0.0)), 0.0
         for wave, patterns in zip(waves, self.by_harmonic, strict=True):
             rest = wave - (wave.swapaxes(1, 2) @ patterns.T @ patterns).swapaxes(1, 2)
@@ -163,7 +166,9 @@ class PressureModes:
 
 def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads) -> PinLoads:
     """The resultants of pressures with harmonics (N + 1, T, R, 2) Pa, and the axial loads of the
-    links; without their round-off where only fits press.
+    links.
+
+    The resultants are set to zero where they are round-off of a press fit without load.
     """
     axial = others_along(pin, rings, links)
     area = np.array([pin.band(name).area for name in rings])
@@ -175,8 +180,9 @@ def resultants(pin: Pin, rings: tuple[str, ...], waves: Floats, links: PinLoads)
 
 
 def across_all(surfaces: Sequence[str]) -> tuple[UnitLoad, ...]:
-    """The unit loads across the pin on all of some surfaces: contact may open at a ring at some
-    instants, and press on it at others.
+    """The unit loads across the pin on the given surfaces, without shoulders.
+
+    All of them count, since contact may be open at a ring at some instants and closed at others.
     """
     return tuple(UnitLoad(x, "force", 1) for x in surfaces if not x.startswith(SHOULDER))
 
@@ -187,10 +193,10 @@ def pressure_modes(
     parts: Sequence[tuple[Floats, float]],
     known: PressureModes | None = None,
 ) -> PressureModes:
-    """The patterns that reproduce harmonics of pressures (N + 1, T, R, 2) Pa in some parts, such as
-    cases.
+    """The patterns that reproduce the harmonics of pressures.
 
-    parts: each with the fraction of its largest amplitude that is negligible.
+    parts: harmonics (N + 1, T, R, 2) Pa, such as those of a case, each with the fraction of its
+    largest amplitude that is negligible.
     known: existing patterns, which come first.
     """
     scaled = [x / (negligible * (np.abs(x).max(initial=0.0) or 1.0)) for x, negligible in parts]
@@ -199,7 +205,7 @@ def pressure_modes(
     modes = []
     for wave, old in zip(waves, before, strict=True):
         amplitude = wave.transpose(0, 2, 1).reshape(-1, len(rings))
-        for _ in range(2):  # once more for round-off
+        for _ in range(2):  # the second pass removes round-off
             amplitude = amplitude - amplitude @ old.T @ old
         instants, size, patterns = np.linalg.svd(amplitude, full_matrices=False)
         most = np.abs(instants * size).max(axis=0)
@@ -208,7 +214,7 @@ def pressure_modes(
 
 
 def stacked(loads: Sequence[PressureLoads]) -> PressureLoads:
-    """The loads, made of the same patterns, as instants of one case without times."""
+    """The loads, which are made of the same patterns, as instants of one case without times."""
     acting = _after_each_other(loads)
     forces, moments, body = (
         np.concatenate([getattr(one, name) for one in loads])
@@ -232,15 +238,16 @@ def _after_each_other(loads: Sequence[PressureLoads]) -> dict[UnitLoad, Floats]:
 
 
 def amplitudes(pressure: Floats, highest: int, angle: float = 0.0) -> Floats:
-    """The harmonics 0 to `highest` of pressures (R, M), (N + 1, R, 2), of cos and sin.
+    """The harmonics 0 to `highest`, cos and sin, (N + 1, R, 2), of pressures (R, M).
 
-    Pressure is even on each sector, the middle of the first at an angle, rad, from the x axis.
+    The pressure is uniform on each sector. angle: from the x axis to the middle of the first
+    sector, rad.
     """
     return np.asarray(pressure @ waves_of_sectors(pressure.shape[1], highest, angle))
 
 
 def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
-    """The harmonics of a unit pressure on each sector, (N + 1, M, 2)."""
+    """The harmonics, cos and sin, of a unit pressure on each sector, (N + 1, M, 2)."""
     n = np.arange(highest + 1)
     factor = np.sinc(n / sectors) * np.where(n > 0, 2.0, 1.0) / sectors
     turns = np.outer(n, 2.0 * np.pi * np.arange(sectors) / sectors + angle)
@@ -248,15 +255,16 @@ def waves_of_sectors(sectors: int, highest: int, angle: float = 0.0) -> Floats:
 
 
 def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
-    """The axial forces and torques of the links, and the body force, on the rings, and on the
-    other surfaces after these that take axial forces (PinLoads.seats).
+    """The axial forces and torques of the links, and the body force, as loads on the rings.
 
+    After the rings come the other surfaces that take axial forces (PinLoads.seats).
     pin: with its bands cut into rings.
     """
     out = _along(pin, rings, links)
     if not links.pulls:
         return out
-    # What acts under other loads of the problem: a unit of each force and torque.
+    # The unit loads that act under any loads of the problem follow from a unit of each axial force
+    # and torque.
     units = np.zeros((3, len(links.surfaces), 3)), np.zeros((3, len(links.surfaces), 3))
     for surface, side in links.pulls:
         if surface in links.surfaces:
@@ -267,7 +275,7 @@ def others_along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
 
 
 def _along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
-    """The same, at the instants of the loads alone."""
+    """The same, without unit loads that act only under other loads of the problem."""
     here = {surface: links.seats.get(surface, (surface, surface)) for surface in links.surfaces}
     elsewhere = {x: ringed_name(pin, x) for both in here.values() for x in both if x not in here}
     surfaces = (*rings, *elsewhere.values())
@@ -292,8 +300,9 @@ def _along(pin: Pin, rings: tuple[str, ...], links: PinLoads) -> PinLoads:
 
 
 def ring_shares(pin: Pin, rings: tuple[str, ...], bands: tuple[str, ...]) -> Floats:
-    """The share of each band's force along the axis that each ring takes, (C, R): that of the
-    parabola over the band by which it fades towards the edges.
+    """The share of each band's axial force that each ring takes, (C, R).
+
+    The force per length is a parabola over the band, zero at its edges.
     """
     on_band = np.array([[name.startswith(f"{band} ring ") for name in rings] for band in bands])
     z0, z1 = np.array([(b.z0, b.z1) for b in map(pin.band, rings)]).T

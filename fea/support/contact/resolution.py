@@ -7,28 +7,29 @@ from dataclasses import dataclass, replace
 
 from geometry.shape.rings import USUAL_RING_COUNT
 
-# Half angle of contact times the harmonics that follow its pressure to 2 %, and sectors for each of
-# these; measured on the clevis of benchmarks/joints/narrow_arcs.py.
+# Product of the half angle of contact and the number of harmonics at which these follow the
+# pressure to 2 %, and the sectors for each harmonic; measured on the clevis of
+# benchmarks/joints/narrow_arcs.py.
 HARMONICS_PER_ARC, SECTORS_PER_NARROW_HARMONIC = 8.0, 2
-MAX_SECTORS = 180  # two of the arcs in which the surface is read (fea.core.pressed) each
-MAX_CELLS = 6000  # a dense matrix of them takes 300 MB
+MAX_SECTORS = 180  # each is two of the arcs in which the surface is read (fea.core.pressed)
+MAX_CELLS = 6000  # their dense matrix takes 300 MB
 
 
 @dataclass(frozen=True)
 class Resolution:
     """The resolution of contact.
 
-    rings: of a band with sharp edges (geometry.shape.rings).
-    sectors: over its circumference.
-    highest: harmonic of elasticity that is computed.
-    across: elements over the pin's diameter where flexibilities are found.
-    beside: length of the rings where rounding begins, of an edge's radius, if the peak of pressure
-    there is to be resolved.
+    rings: number on a band with sharp edges (geometry.shape.rings).
+    sectors: number around the circumference.
+    highest: highest harmonic of the flexibilities that is computed.
+    across: elements over the pin's diameter on the mesh for the flexibilities.
+    beside: length of the rings where rounding begins, as a fraction of the edge radius, if the peak
+    of pressure there is to be resolved.
 
     The usual values give the moment and the stress at mid-span to 0.3 %
     (benchmarks/joints/joint.py). They do not give the peak of pressure at rounded edges: contact
-    reaches only a few hundredths of the radius into the rounding, and the peak to 3 % takes rings
-    of a tenth of that: `beside` 0.004.
+    reaches only a few hundredths of the radius into the rounding. Rings of a tenth of that length
+    (`beside` 0.004) give the peak to 3 %.
     """
 
     rings: int = 8
@@ -38,23 +39,24 @@ class Resolution:
     beside: float | None = None
 
     def for_arcs(self, half_angle: float, ring_count: int) -> Resolution:
-        """The resolution with the harmonics and sectors that follow the pressure on an arc, as far
-        as the number of cells allows, and the usual rings where these are more.
+        """The resolution whose harmonics follow the pressure on an arc, as far as the number of
+        cells allows.
 
+        It has the usual rings; where this resolution has enough harmonics, it is returned as it is.
         half_angle: of contact, rad.
-        ring_count: number of usual rings of all lugs.
+        ring_count: number of rings of all lugs, with the usual rings.
         """
         wanted = math.ceil(HARMONICS_PER_ARC * self.rings / USUAL_RING_COUNT / half_angle)
         most = min(MAX_CELLS // ring_count, MAX_SECTORS)
         highest = min(wanted, most // SECTORS_PER_NARROW_HARMONIC) // 2 * 2
         if highest <= self.highest:
             return self
-        sectors = SECTORS_PER_NARROW_HARMONIC * highest  # whose halves are whole, too
+        sectors = SECTORS_PER_NARROW_HARMONIC * highest  # even, and so is the half
         return replace(self, rings=USUAL_RING_COUNT, sectors=sectors, highest=highest)
 
 
 USUAL = Resolution()
-# They are tried in this order, until one is fine enough.
+# Resolutions are tried in this order, until one is fine enough.
 RESOLUTIONS: tuple[Resolution, ...] = (
     USUAL,
     Resolution(12, 48, 16),

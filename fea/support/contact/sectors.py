@@ -1,6 +1,7 @@
 """The cells around a ring, and the displacements of cells under pressure on others.
 
-Under loads in one plane the contact is mirrored about it, so that half the circumference is enough.
+Under loads in one plane the contact is symmetric about it, so that half the circumference is
+enough.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ import numpy as np
 from fea.core.pin_loads import Floats
 from pinbase.arrays import Ints, Mask
 
-TAIL_HARMONICS_PER_SECTOR = 40  # times the sectors: harmonics of the half-plane that are summed
+TAIL_HARMONICS_PER_SECTOR = 40  # harmonics of the half-plane that are summed, per sector
 
 
 @dataclass(frozen=True)
 class Sectors:
-    """The cells around a ring, of M equal sectors, the first about x.
+    """The C cells around a ring of M equal sectors, of which the first is centred on x.
 
-    count: M.
+    count: number of sectors, M.
     mirrored: whether each cell is a sector together with its mirror image about x.
     """
 
@@ -58,8 +59,10 @@ class Sectors:
         return x[:, : len(self)].ravel()
 
     def between(self, apart: Floats) -> Floats:
-        """Values by the number of sectors between two of them, (R, R, M), as those of all pairs of
-        cells (R C, R C): the mean over the sectors of the second.
+        """The values for all pairs of cells, (R C, R C), each the mean over the sectors of the
+        second cell.
+
+        apart: values by the number of sectors between two sectors, (R, R, M).
         """
         k, rings = np.arange(len(self)), len(apart)
         pairs = apart[:, :, (k[:, None] - k) % self.count]
@@ -70,20 +73,20 @@ class Sectors:
 
 
 class CellFlexibility:
-    """Mean displacements of cells under forces on cells.
+    """The mean displacements of cells under forces on cells.
 
-    flexibility: (N + 1, R, R) m/Pa by harmonic, on means over rings.
-    tail: n u_n / p_n for higher harmonics, m/Pa, (R,).
-    area: of a sector of each ring, (R,) m^2.
-    sectors: M around each ring.
-    besides: (R M, R M) m/N, further displacement of a body that is not alike in all directions.
+    flexibility: mean displacements of rings, by harmonic, (N + 1, R, R) m/Pa.
+    tail: n u_n / p_n for higher harmonics, (R,) m/Pa.
+    area: of one sector of each ring, (R,) m^2.
+    sectors: number M around each ring.
+    added: displacement that a body without rotational symmetry adds, (R M, R M) m/N.
     """
 
     def __init__(
-        self, flexibility: Floats, tail: Floats, area: Floats, sectors: int, besides: Floats | None
+        self, flexibility: Floats, tail: Floats, area: Floats, sectors: int, added: Floats | None
     ) -> None:
         self._flexibility, self._tail, self._area = flexibility, tail, area
-        self._sectors, self._besides = sectors, besides
+        self._sectors, self._added = sectors, added
         self._made: dict[Sectors, Floats] = {}
 
     def of(self, cells: Sectors) -> Floats:
@@ -91,21 +94,23 @@ class CellFlexibility:
         if cells not in self._made:
             out = self._made[cells] = cells.between(self._apart)
             out /= np.repeat(self._area, len(cells))  # in place: of many cells it has 250 MB
-            if self._besides is not None:
-                out += self._besides
+            if self._added is not None:
+                out += self._added
         return self._made[cells]
 
     @cached_property
     def _apart(self) -> Floats:
-        """The displacement (R, R, M), m/Pa, of a sector under a pressure on another one."""
-        # It depends on the angle between both alone, and is summed over harmonics for each angle,
-        # the half-plane's beyond.
+        """The displacement of a sector under a pressure on another sector, (R, R, M) m/Pa, by the
+        number of sectors between them.
+        """
+        # The displacement depends only on the angle between the sectors. It is summed over the
+        # harmonics for each angle; higher harmonics are those of a half-plane.
         M, n = self._sectors, np.arange(len(self._flexibility))
         angles = 2.0 * np.pi * np.arange(M) / M
         waves = np.cos(np.outer(n, angles)) * sector_factors(M, n)[:, None]  # (N + 1, M)
         apart = np.tensordot(self._flexibility, waves, (0, 0))  # (R, R, M)
         weights = tail_weights(M, len(n))
-        near = weights @ np.cos(np.outer(np.arange(M), angles))  # the same a turn further on
+        near = weights @ np.cos(np.outer(np.arange(M), angles))
         ring = np.arange(len(self._tail))
         apart[ring, ring] += self._tail[:, None] * near
         return np.asarray(apart)
@@ -117,9 +122,10 @@ def sector_factors(sectors: int, n: Ints) -> Floats:
 
 
 def tail_weights(sectors: int, first: int) -> Floats:
-    """Coefficients (M,) of cos(n a) on the sectors that sum the series u_n = p_n / n from harmonic
-    `first` on.
+    """Coefficients (M,) of cos(n a), n < M, that sum the series u_n = p_n / n on the sectors, from
+    harmonic `first` on.
     """
+    # On M equal sectors harmonic n is the same wave as harmonic n mod M.
     n = np.arange(first, TAIL_HARMONICS_PER_SECTOR * sectors)
     terms = sector_factors(sectors, n) / n
     return np.asarray(np.bincount(n % sectors, terms, sectors), dtype=np.float64)

@@ -1,9 +1,9 @@
 """The cuts of a pin as its contact with lugs sees them.
 
-Cells of which a cut takes nearly all press no more. On the others the compliance grows by what the
-cuts add under pressures of single rings, harmonic by harmonic (fea.cut.compliance): the pin bends
-more, is squeezed oval over a hole, and yields beside a mouth. Cells that are taken in part press as
-whole ones, by the force on what is left.
+A cell that a cut removes almost completely carries no pressure. On the other cells the cuts add
+compliance, which is computed under pressures on single rings, harmonic by harmonic
+(fea.cut.compliance): the pin bends more, ovalises over a hole, and gives way beside a mouth. A cell
+that is removed in part counts as a whole cell, with the force on its remainder.
 """
 
 from __future__ import annotations
@@ -25,17 +25,19 @@ from pinbase.arrays import Floats, Mask
 from pinbase.memo import Memo
 from pinbase.records import digest
 
-CELL_POINTS = 8  # along each side of a cell, at which it is seen whether a cut takes it
-MIN_CELL_LEFT = 0.15  # of a cell's area: a cell with less presses no more; chosen by judgement
+CELL_POINTS = 8  # points along each side of a cell, which are tested for being inside a cut
+# Fraction of a cell's area that must remain for the cell to carry pressure; chosen by judgement.
+MIN_CELL_LEFT = 0.15
 
 
 @dataclass(frozen=True)
 class SeenCuts:
-    """The cuts of a pin, and what they add to the work of pressures on its rings.
+    """The cuts of a pin, and the compliance that they add under pressures on its rings.
 
-    compliance: under unit pressures, by harmonic, ring and phase.
-    of: (K, 3) harmonic, ring and phase of each.
-    known: what is added on cells, since many variations of a joint have the same ones.
+    compliance: added compliance under K unit pressures.
+    of: harmonic, ring and phase of each unit pressure, (K, 3).
+    known: added displacements of cells that are kept, since many variations of a joint have the
+    same cells.
     """
 
     cut: CutPin
@@ -45,14 +47,15 @@ class SeenCuts:
 
     @cached_property
     def angle(self) -> float:
-        """The middle of the first cell, rad, at which cells are like the first cut on both sides.
+        """The angle of the middle of the first cell, rad, which is that of the first cut.
 
-        Cells do not turn with the loads, as they do on a pin that is alike all around.
+        The cells are then symmetric about this cut. They do not turn with the loads, as they do on
+        a pin with rotational symmetry.
         """
         return next(iter(self.cut.cuts.values())).angle
 
-    def gone(self, bands: Bands, sectors: int) -> Mask:
-        """A mask (U,) of the cells that cuts take."""
+    def removed(self, bands: Bands, sectors: int) -> Mask:
+        """A mask (U,) of the cells that cuts remove."""
         part = (np.arange(CELL_POINTS) + 0.5) / CELL_POINTS - 0.5
         turns = (np.arange(sectors)[:, None] + part).ravel() * 2.0 * np.pi / sectors + self.angle
         out = []
@@ -68,9 +71,9 @@ class SeenCuts:
         return np.concatenate(out)
 
     def added(self, bands: Bands, sectors: int, groups: Floats) -> Floats:
-        """The displacement of cells under forces on cells that the cuts add, (U, U) m/N.
+        """The displacements of cells under forces on cells that the cuts add, (U, U) m/N.
 
-        groups: (R, C) 1 where a ring of the pin belongs to a ring of the cells.
+        groups: (R, C), 1 where a ring of the pin belongs to a ring of the cells.
         """
         key = digest((bands.z, bands.length, bands.radius, sectors, groups))
         return self.known.get(key, lambda: self._added(bands, sectors, groups))
@@ -81,9 +84,10 @@ class SeenCuts:
         on_cells = groups[ring][:, :, None] * waves[n, :, phase][:, None, :]
         area = bands.length * bands.radius * 2.0 * np.pi / sectors
         amounts = (on_cells / area[:, None]).reshape(len(self.of), -1)
-        here = ~self.gone(bands, sectors)
-        # Forces of all cells are in balance. What the unit loads do otherwise, closed by tractions
-        # on all bands, is left out: it would move the pin rigidly at most.
+        here = ~self.removed(bands, sectors)
+        # The forces of all cells together are in balance. Single unit loads are not, and tractions
+        # on all bands close their balance. The unbalanced part is therefore projected out, which
+        # removes at most a rigid motion of the pin.
         turns = 2.0 * np.pi * np.arange(sectors) / sectors
         e_r = np.tile(np.stack([np.cos(turns), np.sin(turns)], axis=1), (len(bands.z), 1))
         z = np.repeat(bands.z - bands.z.mean(), sectors)[:, None] / np.ptp(bands.z)
@@ -99,8 +103,10 @@ def seen_cuts(
 ) -> SeenCuts:
     """The cuts of a pin in contact with its lugs.
 
-    cut: with the bands of the lugs. ringed: the pin without cuts, its bands cut into rings.
-    highest: harmonic of the pressures.
+    cut: the pin with cuts and with the bands of the lugs.
+    ringed: the pin without cuts, its bands cut into rings.
+    rings: names of the rings.
+    highest: highest harmonic of the pressures.
 
     Raises: MeshError, SolveError.
     """

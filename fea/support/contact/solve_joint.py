@@ -1,8 +1,9 @@
-"""A pin in its lugs under all loads of a case: contact at every instant, then stress by pressures.
+"""The contact of a pin in its lugs at all instants of a case, and the pressures as loads.
 
-Flexibilities are found once, on a mesh of the pin and one of each lug; contact at an instant starts
-from that of the one before. The pressures are loads like any other of the harmonic model, so that
-stress, its error and verdict come from fea.solve.solve, of a pin that nothing clamps.
+Flexibilities are computed once, on a mesh of the pin and one mesh of each lug. Contact at an
+instant starts from the most similar instant that has been solved. The harmonic model takes the
+pressures like any other loads, so that stress, its error and the verdict come from fea.solve.solve
+for an unclamped pin.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ from fea.support.contact.pressure_loads import (
 )
 from fea.support.contact.resolution import USUAL, Resolution
 from fea.support.contact.seen_cuts import SeenCuts, seen_cuts
-from fea.support.lugs.changes import with_stiffness
+from fea.support.lugs.changes import softened
 from fea.support.lugs.fit import fitted, on_structure
 from fea.support.lugs.links import link_forces, link_moments, link_numbers, tilting_bands
 from fea.support.lugs.lug import Bushing, Lug
@@ -52,18 +53,19 @@ from pinbase.arrays import Ints, Mask
 from pinbase.memo import Memo
 
 LUG_SIZE_DIGITS = 12  # digits to which lugs of the same size agree
-# Times the sectors: harmonics in which neighbouring rings feel each other
+# Harmonics, as a multiple of the sectors, below which the rings of a lug are coupled; from there on
+# each ring is a half-plane (tail).
 COUPLED_HARMONICS_PER_SECTOR = 4
-Alike = tuple[float, Material, Bushing | None, bytes, Material]
+FlexibilityKey = tuple[float, Material, Bushing | None, bytes, Material]
 
 
 class ContactModel:
     """A pin in its lugs, with the flexibilities that serve all cases and clearances.
 
-    first: its first mesh for stress, None where nothing is solved on it again.
-    on_pin, on_lugs: the meshes of the flexibilities, one for equal lugs.
-    memo: of flexibilities and meshes, shared with other models.
-    cuts: of the pin, as contact sees them; None: of a pin without cuts.
+    first: first mesh for stress; None where nothing is solved on that mesh again.
+    on_pin, on_lugs: meshes of the flexibilities; equal lugs share one mesh.
+    memo: flexibilities and meshes, shared with other models.
+    cuts: cuts of the pin as contact sees them; None for a pin without cuts.
 
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
@@ -83,15 +85,15 @@ class ContactModel:
         self.on_pin, self.of_pin = self._pin_flexibility()
         self.of_lugs = np.zeros_like(self.of_pin)
         self.wavy = np.zeros((2, len(self.high), *self.of_pin.shape[1:]))  # of the pin, of the lugs
-        self.on_lugs: dict[Alike, RingBody] = {}
-        for key, equal in self.alike().items():
+        self.on_lugs: dict[FlexibilityKey, RingBody] = {}
+        for key, equal in self.equal_lugs().items():
             (_, lug, ends), *_ = equal
             self.on_lugs[key], low, wavy = self._lug_flexibility(lug, ends)
             for rows, *_ in equal:
                 self.of_lugs[:, rows, rows], self.wavy[:, :, rows, rows] = low, wavy
 
     def seeing(self, cut: CutPin) -> ContactModel:
-        """The model of the pin with cuts, which its contact sees.
+        """The model whose contact sees the cuts of the pin.
 
         Raises: MeshError, SolveError.
         """
@@ -106,7 +108,7 @@ class ContactModel:
         return other
 
     def _pin_flexibility(self) -> tuple[RingBody, Floats]:
-        """The pin's rings on a mesh and their flexibility, solved once for each shape."""
+        """The rings of the pin on a mesh and their flexibility, solved once for each shape."""
 
         def make() -> tuple[RingBody, Floats]:
             body = pin_rings(self.pin, self.rings, self.material, self.cells.across)
@@ -116,7 +118,7 @@ class ContactModel:
         return self._memo.get((*key, self.cells.across, self.cells.highest), make)
 
     def _lug_flexibility(self, lug: Lug, ends: Floats) -> tuple[RingBody, Floats, Floats]:
-        """A lug's rings on a mesh, their flexibility, and that for short waves (of the pin too)."""
+        """The rings of a lug on a mesh, their flexibility, and that for short waves (`wavy_of`)."""
 
         def make() -> tuple[RingBody, Floats, Floats]:
             body = lug_rings(self.eye(lug, ends), lug, self.cells.across)
@@ -149,7 +151,7 @@ class ContactModel:
         self.rings = tuple(name for c, ends in self.ends.items() for name in rings(c, ends))
 
     def without_meshes(self) -> ContactModel:
-        """The model ready for contact, without what only derivatives and other shapes need."""
+        """The model ready for contact, without meshes, which only derivatives and shapes need."""
         other = copy.copy(self)
         other._memo = Memo()
         for meshes in ("on_pin", "on_lugs", "first"):
@@ -157,7 +159,8 @@ class ContactModel:
         return other.varied(other.lugs)
 
     def reshaped(self, pin: Pin, material: Material, lugs: Sequence[Lug]) -> ContactModel:
-        """The model of another pin in other lugs on such cells, without computing flexibilities.
+        """The model of another pin in other lugs on the same resolution of cells, with the
+        flexibilities of this one.
 
         Raises: ArgumentError for lugs that do not fit the pin.
         """
@@ -168,12 +171,12 @@ class ContactModel:
         return other
 
     def ring_count(self, of_band: int) -> int:
-        """The approximate number of rings with so many of a band with sharp edges."""
+        """The approximate number of all rings, if a band with sharp edges had `of_band` rings."""
         return len(self.rings) * of_band // self.cells.rings
 
     @property
     def high(self) -> Ints:
-        """Harmonics that are felt by neighbouring rings alone."""
+        """The harmonics beyond `highest`, through which only rings of the same lug are coupled."""
         return np.arange(self.cells.highest + 1, COUPLED_HARMONICS_PER_SECTOR * self.cells.sectors)
 
     def eye(self, lug: Lug, ends: Floats) -> Pin:
@@ -181,27 +184,25 @@ class ContactModel:
         return annulus(self.whole, lug.connection, lug.outer_diameter, ends)
 
     def wavy_of(self, lug: Lug, ends: Floats) -> Floats:
-        """The flexibility of a lug's rings by fea.support.contact.flexibility.wavy_flexibility."""
+        """The flexibility of pin and lug for short waves, on the lug's rings."""
         radius = self.whole.band(lug.connection).radius
         return wavy_flexibility(lug, self.material, radius, ends, self.high)
 
-    def likeness(self, lug: Lug, ends: Floats) -> Alike:
-        """The properties on which the flexibility of a lug's rings, and of the pin against them,
-        depends.
-        """
+    def flexibility_key(self, lug: Lug, ends: Floats) -> FlexibilityKey:
+        """The properties that decide a lug's flexibility, and that of the pin for short waves."""
         bore = 2.0 * self.whole.band(lug.connection).radius
         size = np.round(np.append(ends, bore) / lug.outer_diameter, LUG_SIZE_DIGITS)
         return lug.outer_diameter, lug.material, lug.bushing, size.tobytes(), self.material
 
-    def alike(self) -> dict[Alike, list[tuple[slice, Lug, Floats]]]:
-        """The lugs, as `by_lug` has them, grouped by equal flexibility."""
-        groups: dict[Alike, list[tuple[slice, Lug, Floats]]] = {}
+    def equal_lugs(self) -> dict[FlexibilityKey, list[tuple[slice, Lug, Floats]]]:
+        """The lugs grouped by equal flexibility, in the form of `by_lug`."""
+        groups: dict[FlexibilityKey, list[tuple[slice, Lug, Floats]]] = {}
         for rows, lug, ends in self.by_lug():
-            groups.setdefault(self.likeness(lug, ends), []).append((rows, lug, ends))
+            groups.setdefault(self.flexibility_key(lug, ends), []).append((rows, lug, ends))
         return groups
 
     def by_lug(self) -> Iterator[tuple[slice, Lug, Floats]]:
-        """The rows of each lug's rings, the lug, and the rings' ends along its band."""
+        """Yield for each lug the numbers of its rings, the lug, and the rings' ends in it, m."""
         first = 0
         for lug, ends in zip(self.lugs, self.ends.values(), strict=True):
             rows = slice(first, first + len(ends) - 1)
@@ -212,21 +213,21 @@ class ContactModel:
     def flexibility(self) -> Floats:
         """The flexibility of pin and lugs on all rings, by harmonic, m/Pa.
 
-        Beyond `highest` it couples neighbouring rings alone, as half-spaces.
+        Beyond `highest` pin and lugs count as half-spaces, which couple only the rings of one lug.
         """
         return np.concatenate([self.of_pin + self.of_lugs, self.wavy.sum(axis=0)])
 
     def varied(self, lugs: tuple[Lug, ...], softness: Sequence[float] = ()) -> ContactModel:
         """The model of the same pin in lugs of other clearance, edge radius and tilt, with the
-        flexibilities at hand.
+        flexibilities of this model.
 
-        softness: how many times softer each lug is.
+        softness: factor on the compliance of each lug.
         """
         softness = softness or (1.0,) * len(lugs)
         other = copy.copy(self)
         for known in ("contact", "flexibility", "bands", "on_shaft"):
             other.__dict__.pop(known, None)
-        other.lugs = tuple(with_stiffness(*both) for both in zip(lugs, softness, strict=True))
+        other.lugs = tuple(softened(*both) for both in zip(lugs, softness, strict=True))
         if set(softness) == {1.0}:
             tilts = [lug.tilt for lug in lugs]
             other.__dict__["flexibility"] = self.flexibility
@@ -255,22 +256,23 @@ class ContactModel:
         sectors: int,
         groups: Floats | None = None,
     ) -> ContactProblem:
-        """The contact problem on cells of some bands, with the cuts of the pin.
+        """The contact problem on the cells of some rings, with the cuts of the pin.
 
-        flexibility, tail, sectors: as of ContactProblem.
-        groups: (R, C) 1 where a ring of the model belongs to one of the bands; all equal by
-        default.
+        bands: the rings (C,).
+        flexibility, tail, sectors: as in ContactProblem.
+        groups: (R, C), 1 where a ring of the model belongs to one of these rings; by default they
+        are the same rings.
         """
         tilt = [lug.tilt for lug in self.lugs]
         if self.cuts is None:
             return ContactProblem(bands, flexibility, tail, tilt, sectors)
         groups = np.eye(len(self.rings)) if groups is None else groups
-        added, gone = self.cuts.added(bands, sectors, groups), self.cuts.gone(bands, sectors)
-        return ContactProblem(bands, flexibility, tail, tilt, sectors, added, gone)
+        added, removed = self.cuts.added(bands, sectors, groups), self.cuts.removed(bands, sectors)
+        return ContactProblem(bands, flexibility, tail, tilt, sectors, added, removed)
 
     @cached_property
     def bands(self) -> Bands:
-        """The bands with their rings."""
+        """The rings of all bands."""
         bands = [self.pin.band(name) for name in self.rings]
         z, length = (np.array(x) for x in zip(*((b.middle, b.length) for b in bands), strict=True))
         radius = np.array([b.radius for b in bands])
@@ -280,12 +282,12 @@ class ContactModel:
 
     @property
     def gap(self) -> Floats:
-        """The clearance and the rounding of the edges by ring, on the radius, m."""
+        """The radial gap by clearance and edge rounding, for each ring, (R,) m."""
         return np.concatenate([lug.gap(self.ends[lug.connection]) for lug in self.lugs])
 
     @property
     def tail(self) -> Floats:
-        """n u_n / p_n of pin and lug together for high harmonics, m/Pa, by ring."""
+        """The product n u_n / p_n of pin and lug together for high harmonics, (R,) m/Pa."""
         by_lug = []
         for _, lug, ends in self.by_lug():
             r = self.whole.band(lug.connection).radius
@@ -294,11 +296,11 @@ class ContactModel:
         return np.concatenate(by_lug)
 
     def solve(self, loads: PinLoads) -> JointContact:
-        """Solve all instants of a case.
+        """Return the contact at all instants of a case.
 
-        loads: of links on all the lugs' bands or on some.
+        loads: of the links, on all bands or on some of them.
 
-        Raises: SolveError where contact does not settle, or forces are not in balance.
+        Raises: SolveError where contact does not settle, or the loads are not in balance.
         """
         states = self.pressed(loads)
         waves = self.waves(states)
@@ -306,22 +308,22 @@ class ContactModel:
         return self.joined(states, patterns.loads(waves, loads, self.arcs(states)))
 
     def waves(self, states: Sequence[ContactState]) -> Floats:
-        """The harmonics of contact at some instants, (N + 1, T, R, 2) Pa, of cos and sin."""
+        """The harmonics of the pressures at some instants, (N + 1, T, R, 2) Pa, cos and sin."""
         return np.stack([amplitudes(x.pressure, self.cells.highest, x.angle) for x in states], 1)
 
     def patterns(
         self, parts: Sequence[tuple[Floats, float]], known: PressureModes | None = None
     ) -> PressureModes:
-        """The patterns that reproduce harmonics of pressures (N + 1, T, R, 2) Pa in some parts.
+        """The patterns that reproduce harmonics of pressures (pressure_loads.pressure_modes).
 
-        parts: each with the fraction that is negligible.
+        parts: harmonics (N + 1, T, R, 2) Pa, each with the fraction that is negligible.
         known: existing patterns, which come first.
         """
         return pressure_modes(self.pin, self.rings, parts, known)
 
     @cached_property
     def on_shaft(self) -> Rings:
-        """The places of the rings on the pin."""
+        """The positions of the rings on the pin."""
         bands, edge, exponent = self.bands, [], []
         for _, lug, ends in self.by_lug():
             middle, length = 0.5 * (ends[1:] + ends[:-1]), ends[-1]
@@ -334,12 +336,12 @@ class ContactModel:
         )  # fmt: skip
 
     def arcs(self, states: Sequence[ContactState]) -> PressedArcs:
-        """The arcs in which contact presses at some instants."""
+        """The arcs under pressure at some instants."""
         cells, angles = [x.pressure > 0.0 for x in states], [x.angle for x in states]
         return PressedArcs.of(self.on_shaft, cells, angles)
 
     def joined(self, states: Sequence[ContactState], loads: PressureLoads) -> JointContact:
-        """The contact at the instants of some loads, together with these."""
+        """The contact at the instants of some loads, together with the loads."""
         contact, mass = self.contact, mass_per_length(self.pin, self.material.density)
         cut, angles = contact.bands, contact.angles
         return JointContact(self.pin, self.lugs, cut, loads, mass, angles, tuple(states))
@@ -347,13 +349,14 @@ class ContactModel:
     def pressed(
         self, loads: PinLoads, problem: ContactProblem | None = None, start: Mask | None = None
     ) -> list[ContactState]:
-        """The contact at each instant of the loads, on cells that turn with the largest force of a
-        link, unless the pin has cuts.
+        """The contact at each instant of the loads.
 
-        Loads that differ by a rotation then share one solution. Each starts from that under the
-        most similar loads; without any initial gap, loads in proportion share one solution, too.
-        problem: with other cells than this model's.
-        start: a guess of the cells in contact at the first instant.
+        The cells turn with the largest force of a link, so that loads that differ by a rotation
+        share one solution; on a pin with cuts the cells do not turn. Each solution starts from that
+        under the most similar loads. Without any initial gap, proportional loads also share one
+        solution.
+        problem: contact problem on other cells than this model's.
+        start: guess of the cells in contact at the first instant.
 
         Raises: SolveError as `solve`.
         """
@@ -365,22 +368,24 @@ class ContactModel:
     def freed(self, loads: PinLoads, problem: ContactProblem | None = None) -> ContactProblem:
         """The contact problem in which the lugs of links that state moments are free to tilt.
 
-        problem: with other cells than this model's.
+        problem: contact problem on other cells than this model's.
         """
         return (problem or self.contact).freed(tilting_bands(self.whole, loads))
 
     @property
     def on_structure(self) -> bool:
-        """Whether some of the lugs are those of a structure."""
+        """Whether some of the lugs belong to a structure."""
         return len(self.lugs) > len(self.given.connections)
 
     def acting(self, loads: PinLoads, bands: Bands | None = None) -> JointLoads:
-        """The loads on the pin: forces of the links, last of the structure, and their moments.
+        """The loads on the pin: forces and moments of the links, those of the structure last, and
+        couples of the body force.
 
-        bands: of the contact problem, about whose middle the body force has couples; by default
-        this model's.
+        bands: rings of the contact problem, about whose middle the couples act; by default this
+        model's.
 
-        Raises: SolveError where moments are not in balance, and no lug reacts that.
+        Raises: SolveError where the forces or moments are out of balance and no lug reacts the
+        remainder.
         """
         mass = (self.material.density or 0.0) * self.whole.volume
         centre, pins = centre_of_volume(self.whole), (self.given, self.whole)
@@ -391,5 +396,5 @@ class ContactModel:
 
 
 def elastic(material: Material) -> tuple[float, float]:
-    """The properties of a material on which flexibilities depend: no strength."""
+    """The properties of a material on which flexibilities depend: E, Pa, and Poisson's ratio."""
     return material.youngs_modulus, material.poisson_ratio

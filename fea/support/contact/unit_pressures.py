@@ -1,10 +1,10 @@
-"""A pin in its lugs by the unit pressures of its rings: what loads and gaps do not change.
+"""A pin in its lugs by unit pressures on its rings, which do not depend on loads or gaps.
 
-The flexibilities, and the stress under a pressure of each ring alone, on the first mesh, are found
-once for a shape and its elasticity. Contact under other loads, with other clearances or strengths,
-then takes an active set on rough cells, and its stress a superposition: a twentieth of a second.
-Such stress is as far off as its one mesh and its cells are, alike before a change and after it, so
-that it serves for ratios.
+The flexibilities, and the stress on the first mesh under a pressure on each ring alone, are
+computed once for a shape and its elasticity. Other loads, clearances or strengths then need only an
+active set on rough cells and a superposition of stress, which take a twentieth of a second. Such
+stress has the errors of its single mesh and of its cells. These are nearly the same before and
+after a change, so that the stress serves for ratios.
 """
 
 from __future__ import annotations
@@ -28,12 +28,15 @@ from pinbase.memo import Memo
 
 
 class UnitMesh(FirstMesh):
-    """The first mesh under unit pressures of single rings, whose fields a memo has."""
+    """The first mesh under unit pressures on single rings, whose fields a memo keeps."""
 
     def fields(
         self, make: Callable[[], HarmonicModel], key: Key, request: UnitFields
     ) -> MeridianFields:
-        """The unit fields of the requested loads, where stress is read for a maximum."""
+        """The unit fields of the requested loads at the points where stress is read for a maximum.
+
+        make: makes the model of the mesh. key: of the mesh in the memo.
+        """
         return self._memo.get(
             ("unit pressures", request[0], *key), lambda: _where_read(make().solve(*request))
         )
@@ -47,10 +50,12 @@ def unit_model(
     memo: Memo,
     together: bool = False,
 ) -> ContactModel:
-    """The model of a pin in its lugs, whose flexibilities and unit fields a memo has by the pin's
-    shape and by what is elastic.
+    """The model of a pin in its lugs whose flexibilities and unit fields a memo keeps, by the pin's
+    shape and the elastic properties.
 
-    together: for pressures that are solved together, once.
+    together: whether stress is solved only once, for all pressures together, so that no unit fields
+    are kept.
+
     Raises: ArgumentError for lugs that do not fit the pin; MeshError, SolveError.
     """
     fitting = fitted(on_structure(pin, lugs), material, lugs)
@@ -65,13 +70,13 @@ def unit_model(
 
 
 def unit_patterns(model: ContactModel) -> PressureModes:
-    """The pressure of each ring alone as a pattern, in all harmonics."""
+    """The patterns that consist of a pressure on one ring each, in all harmonics."""
     each = np.eye(len(model.rings))
     return PressureModes(model.pin, model.rings, (each,) * (model.cells.highest + 1))
 
 
 def _elastic_eye(lug: Lug) -> Lug:
-    """A lug by what its flexibility depends on alone."""
+    """The lug with only the properties on which its flexibility depends."""
     bushing = lug.bushing and replace(lug.bushing, material=lug.bushing.material.elastic_part)
     return Lug(
         lug.connection, lug.outer_diameter, lug.material.elastic_part,
@@ -80,8 +85,8 @@ def _elastic_eye(lug: Lug) -> Lug:
 
 
 def _where_read(fields: MeridianFields) -> MeridianFields:
-    """The fields on the surface and just beneath the rings, without displacements: a tenth of
-    their memory.
+    """The fields at the points of the surface and just beneath the rings, without displacements,
+    which take a tenth of the memory.
     """
     points = np.r_[: fields.skin, len(fields.displacement) : len(fields.points)]
     return replace(

@@ -1,8 +1,8 @@
-"""The change of a pin's stress with its joint: with the cells of contact, with clearance, and with
-the stiffness of lugs.
+"""The change of a pin's stress with the cells of contact and with the properties of the joint.
 
-Contact is solved again at the governing instants with the flexibilities at hand, and all pressures
-act on one mesh, the first: its error is in all maxima alike, so that their ratios are compared.
+Contact is solved again at the governing instants with the known flexibilities. All pressures act on
+one mesh, the first, whose error is nearly the same in all maxima, so that the ratios of maxima are
+used.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from fea.support.contact.cell_error import (
 from fea.support.contact.coarser_cells import on_coarser_cells
 from fea.support.contact.friction import friction_variations, rubbed, rubbed_across, rubs
 from fea.support.contact.joint_changes import (
+    AsGiven,
     Cells,
     JointChanges,
-    LikeGiven,
     PressedJoint,
     VariedPressures,
     at_places,
@@ -50,11 +50,12 @@ from geometry.shape.rings import USUAL_RING_COUNT
 class ResolutionComparison:
     """The stress at one instant on the first mesh, and its relative error from the cells.
 
-    links: the loads.
+    stress, cells: the stress, Pa, and the error.
+    links: loads of the links at the instant.
     over: variations of the joint, with the larger of surface and section, and the stress beneath
     contact, relative to those of the joint as given.
     left_out: the variations that could not be solved, and why.
-    half_angle: of contact where a lug presses most, rad (JointContact.half_angle).
+    half_angle: half angle of contact where a lug presses most, rad (JointContact.half_angle).
     """
 
     stress: AtPlaces
@@ -65,9 +66,9 @@ class ResolutionComparison:
     half_angle: float = 0.5 * math.pi
 
     def ratios(self, case: AtPlaces) -> tuple[Variation, ...]:
-        """The variations relative to the largest stress of a case instead of that of the instant.
+        """The variations relative to the largest stress of a case instead of that at the instant.
 
-        case: on the first mesh, as given.
+        case: the largest stress of the case with the joint as given, on the first mesh.
         """
         own = self.stress
         row, deep = own.row / (case.row or 1.0), own.beneath / (case.beneath or 1.0)
@@ -77,8 +78,8 @@ class ResolutionComparison:
         )
 
     def is_at(self, links: PinLoads, case: PinLoads) -> bool:
-        """Return whether an instant is this one, or no farther from it than two of the case's are
-        apart.
+        """Return whether the instant of the given loads is this one, or away from it by at most the
+        longest interval of the case.
         """
         if links.times is None or self.links.times is None or case.times is None:
             return np.array_equal(links.forces, self.links.forces)
@@ -87,27 +88,29 @@ class ResolutionComparison:
 
 
 def scaled(x: Variation, row: float, below: float) -> Variation:
-    """A variation with its stress times a factor, and with that beneath contact times another."""
+    """The variation with its stress times `row` and its stress beneath contact times `below`."""
     interval = x.interval and (row * x.interval[0], row * x.interval[1])
     deep = below * (x.beneath or 0.0)
     return replace(x, max_von_mises=row * x.max_von_mises, interval=interval, beneath=deep)
 
 
 def joint_range(over: Sequence[Variation], largest: float, below: float = 0.0) -> JointRange:
-    """The range over the joint of a maximum and of the stress beneath contact, Pa.
+    """The range over the joint of a maximum and of the stress beneath contact.
 
-    over: relative to both.
+    over: the variations, relative to the joint as given.
+    largest, below: the maximum and the stress beneath contact with the joint as given, Pa.
     """
     over = tuple(scaled(x, largest, below) for x in over)
     return JointRange(range_ends(largest, over), over)
 
 
-# Tells, from the comparisons of cells at some instants, at which the joint is varied.
+# A function that returns, from the comparisons of cells at some instants, at which of these the
+# joint is varied.
 WhichVaried = Callable[[Sequence[ResolutionComparison]], Sequence[bool]]
 
 
 def nowhere(compared: Sequence[ResolutionComparison]) -> Sequence[bool]:
-    """The joint is varied at no instant (WhichVaried)."""
+    """Return False for every instant, so that no joint is varied (WhichVaried)."""
     return (False,) * len(compared)
 
 
@@ -118,10 +121,10 @@ def compare(
     known: PressureModes | None = None,
     vary: WhichVaried | None = None,
 ) -> tuple[ResolutionComparison, ...]:
-    """Compare joints in contact, each at one instant, with coarser cells and with a varied joint.
+    """Compare contacts, each at one instant, with those on coarser cells and in varied joints.
 
-    known: patterns of the pressures on them.
-    vary: tells from the comparisons of cells at which instants the joint is varied, by default at
+    known: existing patterns of pressures.
+    vary: decides from the comparisons of cells at which instants the joint is varied; by default at
     all.
     """
     if not at:
@@ -134,7 +137,7 @@ def compare(
         [loads_of(model, patterns, x, contact) for x in (*both, in_half_the_harmonics(both[1]))]
         for contact, both in zip(at, exact, strict=True)
     ]
-    likes: list[Mapping[Cells, LikeGiven]] = []
+    as_given: list[Mapping[Cells, AsGiven]] = []
     stress, out = at_places(model, requirement, every), []
     for contact, both in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
@@ -142,10 +145,10 @@ def compare(
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
         own, large = both
-        likes.append({"own": (first, cells, own), "large": (twice, cells, large)})
+        as_given.append({"own": (first, cells, own), "large": (twice, cells, large)})
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
-        ratios = _over_joint(model, at, requirement, patterns, likes, which)
+        ratios = _over_joint(model, at, requirement, patterns, as_given, which)
         out = [replace(x, over=a, left_out=b) for x, (a, b) in zip(out, ratios, strict=True)]
     return tuple(out)
 
@@ -155,32 +158,35 @@ def _over_joint(
     at: Sequence[JointContact],
     requirement: Requirement,
     known: PressureModes,
-    likes: Sequence[Mapping[Cells, LikeGiven]],
+    as_given: Sequence[Mapping[Cells, AsGiven]],
     vary: Sequence[bool],
 ) -> list[tuple[tuple[Variation, ...], str]]:
-    """The variations of each contact, and what is not included in them.
+    """The variations of each contact, and a remark on those that are not included.
 
-    likes: the joints as given, on the cells on which they are known.
-    vary: the contacts whose joint is varied.
+    known: existing patterns of pressures.
+    as_given: for each contact, the joint as given, on the cells on which it was solved.
+    vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
     tried: tuple[Cells, ...] = ("large", "own")
-    if model.cells.rings < USUAL_RING_COUNT:  # so large that larger ones tell the error alone
+    if model.cells.rings < USUAL_RING_COUNT:  # even larger cells serve only to show the error
         tried = "own", "large"
-    known_on = likes[0] if likes else {}
-    joints = JointChanges(model, at, requirement, likes, tuple(x for x in tried if x in known_on))
-    changed, known = joints.by([changes if so else () for so in vary], known)
+    known_on = as_given[0] if as_given else {}
+    joints = JointChanges(
+        model, at, requirement, as_given, tuple(x for x in tried if x in known_on)
+    )
+    changed, known = joints.by([changes if varied else () for varied in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
-    for contact, more in zip(changed, by_friction, strict=True):
+    for contact, friction in zip(changed, by_friction, strict=True):
         left_out = f"not included: {'; '.join(contact.missing)}" if contact.missing else ""
-        out.append(((*contact.over, *more), left_out))
+        out.append(((*contact.over, *friction), left_out))
     return out
 
 
 def varied_pressures(model: ContactModel, contact: JointContact) -> tuple[VariedPressures, ...]:
-    """The pressures of a contact at one instant, and under each change of the joint but friction
-    that can be solved, all on the model's own cells.
+    """The pressures of a contact at one instant, first with the joint as given, then under each
+    change of the joint that can be solved, without friction; all on the model's own cells.
     """
     joints = JointChanges(model, [contact], Requirement(), (), ("own",))
     ((solved, _),) = joints.joints([tuple(joint_variations(model.whole, model.lugs))])
@@ -195,17 +201,18 @@ def _by_friction(
     at: Sequence[JointContact],
     vary: Sequence[bool],
 ) -> list[tuple[Variation, ...]]:
-    """The variations of each contact by the friction of lugs, relative to those without.
+    """The variations of each contact by the friction of lugs, relative to no friction.
 
-    known: patterns of the pressures that have been solved.
+    known: existing patterns of pressures.
     """
     if not rubs(model.lugs):
         return [()] * len(at)
     out: list[tuple[Variation, ...]] = []
-    # Friction is even on every ring, and its step at the edges a singularity of that alone.
+    # The traction of friction is uniform along each ring. Its steps at the edges would be
+    # singularities that exist only for that reason, so that they are not read.
     edges = edges_of_loads(model.pin, model.rings, model.material, requirement.distance)
-    for contact, so in zip(at, vary, strict=True):
-        if not so:
+    for contact, varied in zip(at, vary, strict=True):
+        if not varied:
             out.append(())
             continue
         without, changed = rubbed(model, contact, known)
@@ -224,19 +231,19 @@ def uncompared(
     requirement: Requirement,
     known: PressureModes,
 ) -> tuple[ResolutionComparison, ...]:
-    """Joints in contact, each at one instant, varied on the model's own cells where that is
-    wanted, and compared with nothing.
+    """Return the contacts, each at one instant, without a comparison of cells.
 
-    known: patterns of the pressures on them.
+    Their joints are varied on the model's own cells if the requirement asks for it.
+    known: patterns that reproduce all pressures.
     """
     if not requirement.varied:
         return tuple(ResolutionComparison(NOWHERE, NOWHERE, x.loads.links, ()) for x in at)
     own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
     loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
     stress = at_places(model, requirement, loads)
-    likes: list[Mapping[Cells, LikeGiven]]
-    likes = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
-    over = _over_joint(model, at, requirement, known, likes, (True,) * len(at))
+    as_given: list[Mapping[Cells, AsGiven]]
+    as_given = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
+    over = _over_joint(model, at, requirement, known, as_given, (True,) * len(at))
     return tuple(
         ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
         for x, like, varied in zip(at, stress, over, strict=True)
@@ -246,7 +253,7 @@ def uncompared(
 def _on_both_cells(
     model: ContactModel, at: Sequence[JointContact]
 ) -> list[tuple[PressedJoint, PressedJoint]]:
-    """Each contact, and the same on cells twice as large."""
+    """Each contact, and the same contact on cells twice as large."""
     cells = on_coarser_cells(model)
     return [
         (

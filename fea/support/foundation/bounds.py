@@ -1,20 +1,22 @@
-"""Bounds of the stress by contact from that of a pin on foundations: the error of the model.
+"""Bounds of the stress with contact from the stress of a pin on foundations: the model's error.
 
-Where the beam's von Mises stress is s at a point, that of contact is taken to be between
+If the beam's von Mises stress at a point is s, the stress with contact is taken to lie between
 
-    s (1 - PLAIN) - k dM    and    s (1 + PLAIN + near) + k dM + PRESSURE_FACTOR p
+    s (1 - PLAIN_SECTION_ERROR) - k dM    and
+    s (1 + PLAIN_SECTION_ERROR + near) + k dM + PRESSURE_FACTOR p
 
-k dM is bending stress by the error of the moment, a part of the largest one: of the model
-(moment_error), for clearance and for rounded edges, both of which the beam leaves out. near is
-SHOULDER at shoulders. p = q / d, for a tube times radius over wall, is the pressure of the lug
-there; q is its load per length, at most that farther than EDGE_DISTANCE diameters from the lug's
-edges. With clearance p is larger in the ratio of the largest pressures of plane contact.
+k dM is the bending stress by the error of the moment, a fraction of the largest moment: for the
+model (moment_error), and for clearance and rounded edges, which the beam leaves out. near is
+NOTCH_ERROR at notches and near sharp shoulders. p = q / d is the pressure of the lug; for a tube it
+is multiplied by radius over wall. q is the load per length, but no more than its largest value
+farther than EDGE_DISTANCE diameters from the lug's edges, or its mean over the lug if that is
+larger. With clearance, p is increased in the ratio of the largest pressures of plane contact.
 
-What is bounded is the row's number by contact, the larger of surface and section (fea.core.places).
-The upper bound holds for what lies beneath contact as well, of which a beam knows nothing: so what
-is safe by it is safe by contact. It held for 77 of 77 random pins with two to four lugs, clearance,
-rounded edges, bores and steps, the lower one for all, too (python -m benchmarks foundation). There
-is none for a fillet beside the edge of a lug (FoundationStress.lacking).
+The bounds are for the row's number with contact, the larger of surface and section
+(fea.core.places). The upper bound also holds for the stress beneath contact, which a beam does not
+have, so that a pin that is safe by this bound is safe with contact. Both bounds held for all of 77
+random pins with two to four lugs, clearance, rounded edges, bores and steps (python -m benchmarks
+foundation). There are no bounds for a fillet beside the edge of a lug (FoundationStress.lacking).
 """
 
 from __future__ import annotations
@@ -32,22 +34,28 @@ from fea.support.foundation.stress import FoundationStress
 from fea.support.lugs.lug import Lug
 
 PRESSURE_FACTOR = 0.8  # von Mises stress over the pressure
-# Of the diameter: pressure nearer to a lug's edge is a peak that is not resolved
+# Distance from a lug's edge, in diameters, below which the pressure is a peak that is not resolved.
 EDGE_DISTANCE = 0.1
-# Of the largest moment, at a clearance of p / E diameters, p the mean pressure
+# Error of the largest moment, relative, at a clearance of p / E diameters, p being the mean
+# pressure. It grows with the square root of the clearance.
 CLEARANCE_ERROR = 0.08
-MAX_RELATIVE_CLEARANCE = 100.0  # p / E diameters: what was measured
-ROUNDING_ERROR = 2.5  # of the largest moment, per diameter of the edges' radius
-MAX_EDGE_ROUNDING = 0.05  # of the diameter
+MAX_RELATIVE_CLEARANCE = 100.0  # largest measured clearance, in p / E diameters
+ROUNDING_ERROR = 2.5  # relative error of the largest moment for an edge radius of one diameter
+MAX_EDGE_ROUNDING = 0.05  # largest edge radius, over the diameter
 
 
 @dataclass(frozen=True)
 class StressBounds:
-    """The largest von Mises stress, Pa, at (r, z) in m and theta, at the instant of that index.
+    """The largest von Mises stress on foundations, and its bounds with contact.
 
-    surface: the largest off the axis.
-    bounds: of the stress with contact; None where they are not known, and `why`.
-    moment_part: relative error of the largest moment, inf where it is not known.
+    maximum: largest stress, Pa.
+    surface: largest stress off the axis, Pa.
+    bounds: of the stress with contact, Pa; None where they are not known.
+    place: (r, z) of the largest stress, m.
+    theta: its angle, rad.
+    instant: number of its instant.
+    why: reason why the bounds are not known.
+    moment_part: relative error of the largest moment; inf where it is not known.
     """
 
     maximum: float
@@ -61,7 +69,7 @@ class StressBounds:
 
     @property
     def error(self) -> float | None:
-        """The error that covers both bounds, Pa."""
+        """The error that covers both bounds, Pa; None without bounds."""
         if self.bounds is None:
             return None
         return max(self.maximum - self.bounds[0], self.bounds[1] - self.maximum)
@@ -97,9 +105,7 @@ def _diameters(model: FoundationModel) -> Floats:
 
 
 def _relative_clearance(model: FoundationModel, joint: JointFoundation, instant: int) -> float:
-    """The largest clearance, in p / E diameters, p being the mean pressure on the most loaded
-    band.
-    """
+    """The largest clearance in p / E diameters, p being the largest mean pressure on a band."""
     d = _diameters(model)
     play = max(lug.clearance / x for lug, x in zip(model.lugs, d, strict=True))
     if play == 0.0:
@@ -128,7 +134,10 @@ def _moment_part(model: FoundationModel, loose: float) -> float:
 def _contact_stress(
     stress: FoundationStress, joint: JointFoundation, loose: float
 ) -> tuple[Floats, float]:
-    """The stress of contact at the points, (S, T) Pa, and the largest pressure stress of all."""
+    """The stress by contact pressure at the points, (S, T) Pa, and its largest value anywhere.
+
+    loose: clearance in p / E diameters (`_relative_clearance`).
+    """
     bands, model = joint.bands, stress.model
     load = np.linalg.norm(joint.line_load, axis=2)  # (T, R)
     pressure = np.concatenate(
@@ -143,9 +152,10 @@ def _contact_stress(
 
 
 def _of_lug(model: FoundationModel, lug: Lug, load: Floats, on_lug: Floats) -> Floats:
-    """The pressure on the lug's own rings by the load per length of all (T, R), Pa.
+    """The pressure p on the rings of a lug, Pa.
 
-    on_lug: a mask of the lug's rings.
+    load: load per length on all rings, (T, R) N/m.
+    on_lug: mask (R,) of the lug's rings.
     """
     band = model.whole.band(lug.connection)
     segment = model.whole.segments[model.whole.labels.index(lug.connection)]

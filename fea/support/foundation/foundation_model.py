@@ -1,17 +1,17 @@
 """The small model of a pin in its lugs: a Timoshenko beam on elastic foundations.
 
-Every lug is a row of springs between its bore and the pin's section, guided along the pin by the
-lug, which shifts freely, so that its link's force is exact, and tilts with its stiffness. The
-springs are those of frictionless contact in plane strain (plane_contact), of the pin's bore and the
-lug's width; in three dimensions the neighbourhood shares a local load, which one number,
-COMPLIANCE_SHARE, accounts for. All is linear: a pin is factorised once, and serves any number of
-instants, directions and cases.
+Each lug is a row of springs between its bore and the sections of the pin. The lug shifts freely, so
+that its link's force is exact, and tilts with its stiffness. The spring stiffness is that of
+frictionless contact in plane strain (plane_contact), and depends on the pin's bore and the lug's
+width. In three dimensions the neighbourhood shares a local load; the factor COMPLIANCE_SHARE
+accounts for this. The model is linear: a pin is factorised once for any number of instants,
+directions and cases.
 
-The springs act both ways, as a pin that fits its bore without clearance bears on one side or the
-other. Clearance and the rounding of edges are left out: at a mean pressure of 100 MPa a clearance
-of 0.001 of the diameter changes the largest moment by -9 to +12 % on 9 of 10 pins drawn at random,
-0.003 by -18 to +25 %. Line loads have no peaks at the sharp edges of lugs. docs/benchmarks.md
-compares the model with contact.
+The springs act in both directions, since a pin that fits its bore without clearance bears on one
+side or the other. Clearance and the rounding of edges are left out. At a mean pressure of 100 MPa,
+a clearance of 0.001 of the diameter changes the largest moment by -9 to +12 % on 9 of 10 random
+pins, one of 0.003 by -18 to +25 %. Line loads have no peaks at the sharp edges of lugs.
+docs/benchmarks.md compares the model with contact.
 """
 
 from __future__ import annotations
@@ -40,24 +40,27 @@ from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from geometry.shape.rings import graded, ring, ringed
 
-# Of the plane's compliance, fitted to the largest moments of 60 random pins
+# Factor on the compliance of plane contact, fitted to the largest moments of 60 random pins
 # (python -m benchmarks foundation).
 COMPLIANCE_SHARE = 0.70
 
-# Error of the largest bending moment, of contact without clearance over this model's, less 1: what
-# 19 in 20 of 180 random pins are within (python -m benchmarks foundation).
+# Relative error of the largest bending moment (of contact without clearance over that of this
+# model, less 1), which covers 19 in 20 of 180 random pins (python -m benchmarks foundation).
 PLAIN_MOMENT_ERROR = 0.06
-# Added with two lugs: the moment is small, and depends on where in the lugs the loads act.
+# Error added with two lugs: the moment is small, and depends on where in the lugs the loads act.
 SINGLE_SHEAR_ERROR = 0.04
-# Bore over diameter beyond which the section deforms, and the error added there.
+# Bore over diameter above which the section deforms, and the error added there.
 TUBE_BORE_RATIO, TUBE_ERROR = 0.4, 0.04
-# A middle lug's thickness over the diameter, and the error added with a thicker one.
+# Thickness of a middle lug over the diameter, and the error added with a thicker lug.
 LONG_LUG_RATIO, LONG_LUG_ERROR = 1.8, 0.05
-THICKNESS_LIMITS = 0.3, 3.0  # limits of what was measured, over the smallest diameter
-WIDTH_LIMITS = 1.6, 4.0  # of the lug, over the diameter
-BORE_LIMITS = 0.0, 0.7  # over the diameter
-MODULUS_RATIO_LIMITS = 1.0 / 3.0, 3.0  # of the lug, over the pin's
-COUPLE_TOLERANCE = 1e-6  # of the largest force and the length: a couple below it is none
+# Limits of the pins on which the error was measured:
+THICKNESS_LIMITS = 0.3, 3.0  # thickness of the lugs, over the smallest diameter of the pin
+WIDTH_LIMITS = 1.6, 4.0  # outer diameter of the lug, over the diameter of the band
+BORE_LIMITS = 0.0, 0.7  # bore of the pin, over its diameter
+MODULUS_RATIO_LIMITS = 1.0 / 3.0, 3.0  # modulus of the lug, over that of the pin
+# Fraction of the largest force times the length (or of the largest couple) below which a couple is
+# zero.
+COUPLE_TOLERANCE = 1e-6
 LIMIT_ROUND_OFF = 1e-9
 
 Ints = NDArray[np.int64]
@@ -66,8 +69,8 @@ Stiffness = Callable[[Segment, Material, Lug], float]
 
 
 def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> float:
-    """The stiffness of the foundation of a pin's segment in a lug, N/m^2: force per length over
-    deflection.
+    """The stiffness of the foundation of a pin's segment in a lug, N/m^2: the force per length over
+    the deflection.
     """
     radii = segment.bore / 2.0, segment.diameter / 2.0
     return (
@@ -76,22 +79,24 @@ def foundation_stiffness(segment: Segment, material: Material, lug: Lug) -> floa
 
 
 class JointFoundation(LoadedJoint):
-    """A case of a pin on foundations.
+    """A pin on foundations under the loads of a case.
 
-    Its loads are of the rings, forces and, where the line load varies along a ring, moments; then
-    the axial forces on other surfaces. Where the sign of a line load is not that of the link's
-    force the other side of the bore carries.
+    The loads are forces on the rings, and moments where the line load varies along a ring, then
+    axial forces on other surfaces. Where a line load has the opposite sign of the link's force, the
+    other side of the bore carries it.
     """
 
 
 class FoundationModel:
     """A pin in its lugs as a beam, factorised for all cases.
 
-    rings: of each band, into which loads are cut; their resultants do not depend on the number.
-    stiffness: the function for the stiffness of foundations.
-    Lugs named after segments on which no link bears are those of a structure, which is fixed.
+    Lugs named after segments on which no link bears belong to a fixed structure.
+    rings: number of rings into which the loads on each band are cut; their resultants do not depend
+    on it.
+    stiffness: function for the stiffness of foundations.
 
-    Raises: ValueError for a lug where nothing has its name, or a band without one.
+    Raises: ArgumentError for a lug without a band, a band without a lug, or a lug that does not fit
+    (fea.support.lugs.fit.fitted).
     """
 
     def __init__(
@@ -118,10 +123,10 @@ class FoundationModel:
         self._responses: dict[bytes, Response] = {}
 
     def solve(self, loads: PinLoads, whole: bool = True) -> JointFoundation:
-        """Solve all instants of a case.
+        """Return the joint at all instants of a case.
 
-        loads: of links on all the lugs' bands or on some.
-        whole: false for a part of loads, which need not be in balance.
+        loads: of the links, on all bands or on some of them.
+        whole: false for a part of the loads, which need not be in balance.
 
         Raises: SolveError where forces are not in balance, or no lug reacts a couple.
         """
@@ -155,7 +160,7 @@ class FoundationModel:
         return JointFoundation(self.pin, self.lugs, self.bands, ring_loads, self.mass)
 
     def with_clearances(self, lugs: Sequence[Lug]) -> FoundationModel:
-        """The same model with lugs of other clearance, which changes the error alone.
+        """The same model with lugs of other clearance, which affects only the error.
 
         lugs: in the order of the bands.
         """
@@ -165,19 +170,22 @@ class FoundationModel:
 
     @property
     def _weight(self) -> float:
-        """Mass of the pin, kg."""
+        """The mass of the pin, kg."""
         return float(self.mass @ np.diff(self.pin.stations))
 
     def _reacted(self, amounts: Floats) -> Floats:
-        """The axial forces or torques (T,) as those of the rings, (T, R), that a structure reacts,
-        even along its bands; zero without one.
+        """The axial forces or torques on the rings, (T, R), that a structure reacts, distributed
+        uniformly along its bands; zero without a structure.
+
+        amounts: the sums, (T,).
         """
         react = self.bands.length * np.array(self.structure)[self.bands.band]
         return np.outer(amounts, react / (react.sum() or 1.0))
 
     def _link_moments(self, loads: PinLoads, link_force: Floats, whole: bool) -> Floats:
-        """The moments about x and y that links bring to the pin at each lug, (T, B, 2) N m; of a
-        part of loads just what it states.
+        """The moments about x and y that links transmit to the pin at each lug, (T, B, 2) N m.
+
+        For a part of the loads they are the stated moments, without a share of the imbalance.
         """
         ends, masses = np.array(self.pin.stations), self.mass * np.diff(self.pin.stations)
         centre = float(masses @ (ends[1:] + ends[:-1])) / 2.0 / (self._weight or 1.0)
@@ -185,8 +193,9 @@ class FoundationModel:
         return link_moments((self.given, self.whole), lugs, loads, link_force, weight)
 
     def _of_rings(self, free: Mask) -> Response:
-        """The response of the rings to unit loads of the lugs, of which some (B,) are free to
-        tilt, kept for further loads.
+        """The response of the rings to the unit loads, kept for later loads.
+
+        free: mask (B,) of the lugs that are free to tilt.
         """
         key = free.tobytes()
         if key not in self._responses:
@@ -195,16 +204,19 @@ class FoundationModel:
 
     def _respond(self, free: Mask) -> Response:
         beam, number = self._beam(self._stiffness)
-        still = np.flatnonzero(self.structure).tolist() or [0]
+        fixed = np.flatnonzero(self.structure).tolist() or [0]
         tilt = [0.0 if f else lug.tilt for f, lug in zip(free, self.lugs, strict=True)]
-        response = respond(beam, self.bands.middles, tilt, still)
+        response = respond(beam, self.bands.middles, tilt, fixed)
         belongs = (number == np.arange(len(self.rings))[:, None]).astype(float)
         middles = 0.5 * (beam.stations[1:] + beam.stations[:-1])
         arms = belongs * (middles - self.bands.z[:, None])
         return Response(belongs @ response.force, belongs @ response.moment + arms @ response.force)
 
     def _beam(self, stiffness: Floats) -> tuple[SupportedBeam, Ints]:
-        """The pieces of the beam, and the number of the ring that each is in, -1 outside."""
+        """The beam, and the number of the ring that holds each of its pieces, -1 outside of rings.
+
+        stiffness: of the foundation in each lug, (B,) N/m^2.
+        """
         bands, pin = self.bands, self.pin
         low, high = bands.z - bands.length / 2.0, bands.z + bands.length / 2.0
         z = np.sort([*pin.stations, *low, *high])
@@ -229,9 +241,11 @@ class FoundationModel:
     def _require_couples(
         self, loads: PinLoads, moment: Floats, force: Floats, couples: Floats, link_force: Floats
     ) -> None:
-        """Check that no couple is left on a lug that is free to tilt but what its link states.
+        """Check that each lug that is free to tilt has only the couple that its link states.
 
-        Raises: SolveError where one is.
+        moment, force: on the rings, (T, R, 2). couples: stated by the links, (T, B, 2) N m.
+
+        Raises: SolveError where another couple remains.
         """
         bands = self.bands
         arm = (bands.z - bands.middles[bands.band])[:, None]
@@ -253,10 +267,10 @@ class FoundationModel:
 def moment_error(pin: Pin, material: Material, lugs: Sequence[Lug]) -> float:
     """The relative error of the largest bending moment of FoundationModel.
 
-    It is the difference from frictionless contact without clearance; inf outside of what was
-    measured.
+    It is the difference from frictionless contact without clearance; inf outside the limits of the
+    measurements.
 
-    Raises: ValueError as FoundationModel.
+    Raises: ArgumentError as FoundationModel.
     """
     pin = on_structure(pin, lugs)
     every = fitted(pin, material, lugs)

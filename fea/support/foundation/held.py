@@ -1,9 +1,9 @@
-"""Pins in their lugs by beams on foundations, for all cases and instants; and when that is enough:
-where its error is within the tolerance, or leaves no doubt that the required factor is reached.
+"""The support of a pin by foundations: beams for all cases and instants, and when they are enough.
 
-A maximum has the error of the model alone (fea.support.foundation.bounds), which is at least a
-tenth. Its upper end is above what lies beneath contact, too, of which a foundation knows nothing
-else: so whatever is safe by it is safe by contact. Its rows have the places surface and section.
+They are enough where the error is within the tolerance, or leaves no doubt that the required factor
+is reached. A maximum has the error of the model (fea.support.foundation.bounds), which is at least
+a tenth. Its upper end also covers the stress beneath contact, which a foundation does not have, so
+that a pin that is safe by this end is safe with contact. Rows have the places surface and section.
 """
 
 from __future__ import annotations
@@ -59,7 +59,9 @@ FOUNDATION_OMISSIONS = (
     "A beam on foundations leaves out local stress at lugs and shoulders; the error includes its "
     "measured effect on the surface and beneath contact, but not the peaks at the edges of lugs."
 )
-MIN_GOVERNING_RATIO = 2.0  # times LOCAL of the largest pressure: a smaller stress may not govern
+# Smallest ratio of the maximum to PRESSURE_FACTOR times the largest pressure at which bending
+# certainly governs.
+MIN_GOVERNING_RATIO = 2.0
 
 
 class FoundationSupport:
@@ -72,9 +74,7 @@ class FoundationSupport:
         coarser: HeldPin | None = None,
         progress: Progress = silent,
     ) -> HeldFoundation:
-        """Hold the pin, as every support does; nothing is discretised, and cases that the lugs
-        cannot hold have no solution.
-        """
+        """Hold the pin as every support does; cases in which the lugs cannot hold it fail."""
         progress(f"pin {problem.pin.name}, beam on foundations")
         pin = body_of_revolution(problem.pin)
         assert pin is not None
@@ -84,8 +84,9 @@ class FoundationSupport:
         return HeldFoundation(problem, over, unheld(problem, "foundation"))
 
     def may_be_enough(self, problem: PinProblem, requirement: Requirement) -> bool:
-        """Return whether the foundation's error, at least a tenth, may be small enough; never for a
-        pin with cuts, nor for one that may be pressed into a lug.
+        """Return whether a foundation, whose error is at least a tenth, may be accurate enough.
+
+        It never is for a pin with cuts, nor for a pin that may be pressed into a lug.
         """
         pin = body_of_revolution(problem.pin)
         if pin is None:
@@ -103,7 +104,11 @@ class FoundationSupport:
 
 @dataclass(frozen=True)
 class HeldFoundation(UnderLinkLoads):
-    """A pin on foundations (fea.support.support.HeldPin); its stress is that of their beam."""
+    """A pin on foundations (fea.support.support.HeldPin), whose stress is that of a beam.
+
+    over: the model with its range over the joint.
+    failures: for each case in which the lugs cannot hold the pin, its result.
+    """
 
     problem: PinProblem
     over: FoundationRange
@@ -112,12 +117,12 @@ class HeldFoundation(UnderLinkLoads):
     clamps: tuple[str, ...] = ()
 
     def finished(self, reading: StressReading, requirement: Requirement) -> Solution:
-        """The solution of a beam on the loads of the links, to which a foundation adds nothing."""
+        """The judged solution of a model under the loads of the links; foundations add nothing."""
         peak = judge(reading.evidence, requirement.tolerance)
         return Solution(peak, reading.answer, reading.loads, reading.instant, self)
 
     def solution(self, case: PinLoads, requirement: Requirement) -> Solution:
-        """The stress of a case, its error, sections and joint."""
+        """The judged solution of a case, with sections and the results of the joint."""
         try:
             return self._solution(case, requirement)
         except SolveError as error:
@@ -147,7 +152,9 @@ class HeldFoundation(UnderLinkLoads):
         return Solution(peak, answer, case, row.instant, self, joint)
 
     def bounded_everywhere(self, requirement: Requirement) -> bool:
-        """Return whether no sharp corner of the pin or edge of a lug makes its stress singular."""
+        """Return whether stress is finite everywhere, since the pin has no sharp corner and all
+        lugs have rounded edges.
+        """
         nu, pin = self.problem.material.poisson_ratio, body_of_revolution(self.problem.pin)
         assert pin is not None
         rounded = all(lug.edge_radius > 0.0 for lug in self.problem.lugs)
@@ -156,14 +163,15 @@ class HeldFoundation(UnderLinkLoads):
     def bending_governs(self, solution: Solution) -> bool:
         """Return whether the error is within the tolerance, and bending governs.
 
-        Contact, whose pressure is largest at the edges of lugs and on stubby pins, must not govern.
+        Contact must not govern, as it may at the edges of lugs and on short pins, where its
+        pressure is largest.
         """
         peak = solution.peak
         if peak.verdict != "converged":
             return False
         joint = self.over.own.model.solve(solution.loads.at(np.array([solution.instant])))
         load = np.linalg.norm(joint.line_load, axis=2) / (2.0 * joint.bands.radius)
-        largest = float(load.max())  # per length, over the diameter, Pa
+        largest = float(load.max())  # load per length over the diameter, Pa
         return (peak.max_von_mises or 0.0) >= MIN_GOVERNING_RATIO * PRESSURE_FACTOR * largest
 
 
@@ -175,15 +183,16 @@ class FoundationField(StressAlongBeam):
         self.at = np.stack([stress.r, stress.z], axis=1)
 
     def harmonics(self, loads: Loads) -> Floats:
-        """The stress in the lugs, which need not react the amounts of unit loads."""
+        """The stress, (3, S, 6, T) Pa; amounts of unit loads need not be in balance."""
         whole = isinstance(loads, PinLoads)
         links = loads if isinstance(loads, PinLoads) else _as_loads(loads, self.case)
         return self.stress.harmonics(self.stress.model.solve(links, whole))
 
 
 def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
-    """The forces and moments of unit loads such as those of other loads; of a band's rings the
-    first has what acts along and about the axis.
+    """The amounts of unit loads as forces and moments on the surfaces of other loads.
+
+    The axial forces and torques on all rings of a band act on its first ring.
     """
     none = np.zeros((len(amounts), 2))
 
@@ -220,7 +229,9 @@ def _as_loads(amounts: LoadAmounts, like: PinLoads) -> PinLoads:
 class FoundPlaces:
     """The largest stress of the surface and of the sections.
 
-    The bounds of the row cover both, and the stress beneath contact.
+    surface: bounds of the surface.
+    section: largest stress of the sections.
+    both: bounds that cover surface, sections, and the stress beneath contact.
     """
 
     surface: StressBounds
@@ -229,8 +240,9 @@ class FoundPlaces:
 
     @classmethod
     def of(cls, stress: FoundationStress, every: JointFoundation) -> FoundPlaces:
-        """The places of a case at all its instants; sections by the line loads of the
-        foundations.
+        """The places of a case over all its instants.
+
+        every: the joint at all instants, whose line loads also give the stress of sections.
         """
         sections = SectionField(every.pin, stress.model.material, (), [every.loads])
         both, surface = (stress_bounds(x, every) for x in (stress, stress.on_surface))
@@ -242,7 +254,7 @@ class FoundPlaces:
 
     @property
     def row(self) -> StressBounds:
-        """The bounds of the larger place."""
+        """The bounds of the place that governs."""
         of, at = self.surface, self.section
         if self.governs == "surface":
             return replace(of, bounds=self.both.bounds)
@@ -263,14 +275,14 @@ class FoundPlaces:
 
 
 def point_of(of: StressBounds) -> Point:
-    """The place (x, y, z), m, of the largest stress."""
+    """The location (x, y, z) of the largest stress, m."""
     return at_angle(of.place, of.theta)
 
 
 def _evidence(pin: PinLike, case: str, bounds: StressBounds, rise: float) -> Evidence:
-    """The maximum of a case, with an error of the whole value where none is known.
+    """The evidence of a case, whose error is the whole value where the error is unknown.
 
-    rise: how much the maximum may be higher between instants, Pa.
+    rise: possible rise of the maximum between instants, Pa.
     """
     doubt = None
     if bounds.error is None:
@@ -288,7 +300,9 @@ def _evidence(pin: PinLike, case: str, bounds: StressBounds, rise: float) -> Evi
 
 
 def _band(joint: JointFoundation, model: FoundationModel, b: int) -> BandContact:
-    """The contact of a band, with the angle of plane contact at the largest load per length."""
+    """The contact of band number b, with the half angle of plane contact at the largest load per
+    length.
+    """
     on_band = joint.bands.band == b
     moments = joint.loads.moments[0, : len(on_band)][on_band, :2]
     turning = moments.sum(axis=0) @ np.array([[0.0, -1.0], [1.0, 0.0]])

@@ -1,11 +1,12 @@
-"""Contact of a pin with the eye of a lug in plane strain: how far it sinks in per force.
+"""The contact of a pin with the eye of a lug in plane strain, and its stiffness.
 
-Both are annuli. Displacements and stresses of harmonic n are those of Michell's solution; C_n is
-the displacement along r, in the direction of the pressure p cos n theta that makes it, per
-pressure. For n = 1 a lug is held by a traction of constant direction on its outer surface and
-measured from the mean motion of that surface, as in fea.support.contact.flexibility; a pin is held
-by what the shear of a beam leaves over, taken as even over the section, and measured from the mean
-motion of the section, as Timoshenko's beam is.
+Pin and eye are annuli. Displacements and stresses of harmonic n are those of Michell's solution.
+C_n is the radial displacement, in the direction of the pressure p cos n theta that causes it, per
+pressure. For n = 1 the lug is held by a traction of constant direction on its outer surface, and
+displacements are relative to the mean motion of that surface, as in
+fea.support.contact.flexibility. The pin is held by a body force that is uniform over the section,
+in place of the change of shear along a beam, and displacements are relative to the mean motion of
+the section, as in Timoshenko's beam.
 
 Source: J. R. Barber, Elasticity, tables 8.1 and 9.1 (Michell's solution); G. R. Cowper,
 J. Appl. Mech. 33 (1966) 335 (the mean motion).
@@ -25,7 +26,7 @@ from fea.support.contact.contact import ContactProblem
 from fea.support.contact.flexibility import half_plane
 
 MAX_PLANE_HARMONIC, PLANE_CONTACT_SECTORS = 16, 60
-# Exact for the powers of r, near for 1 / r
+# The quadrature is exact for the powers of r, and accurate for 1 / r.
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -35,10 +36,11 @@ def plane_stiffness(
 ) -> float:
     """The stiffness of plane contact without friction and clearance, N/m^2.
 
-    It is the force per length over the displacement of the lug's outer surface against the pin's
-    section.
-    radii: of the pin's bore, 0 if solid, and of its surface, m.
-    outer: the lug's outer radius, m.
+    It is the force per length over the displacement of the lug's outer surface relative to the
+    pin's section.
+    radii: of the pin's bore (0 if solid) and of its surface, m.
+    pin, lug: the materials.
+    outer: outer radius of the lug, m.
     """
     inner, r = radii
     flexible = pin_harmonics(inner, r, pin) + lug_harmonics(r, outer, lug)
@@ -51,7 +53,8 @@ def plane_stiffness(
 
 
 def largest_pressure(gap: float) -> float:
-    """The largest pressure p0 R / Q of a disc in a plate of its material under a load per length Q.
+    """The largest pressure p0 of a disc in a plate of the same material, as p0 R / Q, where Q is
+    the load per length.
 
     gap: E / (1 - nu^2) times the radial clearance over Q.
 
@@ -64,9 +67,9 @@ def largest_pressure(gap: float) -> float:
 
 
 def half_angle(gap: float) -> float:
-    """The half angle of contact, rad.
+    """The half angle of contact of a disc in a plate of the same material, rad.
 
-    gap and source: as `largest_pressure`.
+    gap and source: as in `largest_pressure`.
     """
 
     def off(angle: float) -> float:
@@ -79,17 +82,17 @@ def half_angle(gap: float) -> float:
 
 
 def pin_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, inwards under pressure on a pin's
-    surface.
+    """The flexibility C_n of a pin under pressure on its surface, (MAX_PLANE_HARMONIC + 1,) m/Pa,
+    with displacements inwards.
     """
-    hole = inner / outer  # lengths over the loaded radius, so that powers stay within range
+    hole = inner / outer  # lengths are divided by the loaded radius, so that powers do not overflow
     high = [-_many(n, hole, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
     return outer * np.array([_even(hole, material), _section(hole, material), *high])
 
 
 def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
-    """The flexibility C_n (MAX_PLANE_HARMONIC + 1,), m/Pa, outwards under pressure in a lug's
-    bore.
+    """The flexibility C_n of a lug under pressure in its bore, (MAX_PLANE_HARMONIC + 1,) m/Pa, with
+    displacements outwards.
     """
     wide = outer / inner
     high = [_many(n, wide, material) for n in range(2, MAX_PLANE_HARMONIC + 1)]
@@ -97,16 +100,17 @@ def lug_harmonics(inner: float, outer: float, material: Material) -> Floats:
 
 
 def _even(other: float, material: Material) -> float:
-    """The radial displacement of harmonic 0, by Lame's tube."""
+    """The radial displacement of harmonic 0, that of Lame's tube."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return (1.0 + nu) / E * (1.0 - 2.0 * nu + other**2) / abs(1.0 - other**2)
 
 
 def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
-    """The terms of Michell's solution at r: 2 mu u_r, 2 mu u_theta, s_rr, s_rt, (4, 4 or 2 for a
-    solid).
+    """The terms of Michell's solution at r, one in each column; rows are 2 mu u_r, 2 mu u_theta,
+    s_rr and s_rt.
 
-    For n = 1 the rigid ones and those with a resultant are left out.
+    There are four terms, two for a solid. For n = 1 the rigid motion and the term with a resultant
+    are left out.
     """
     up = [
         (-n, n, -n * (n - 1), n * (n - 1)),  # r^n
@@ -139,7 +143,7 @@ def _many(n: int, other: float, material: Material) -> float:
 def _section(hole: float, material: Material) -> float:
     """The displacement of a pin for harmonic 1.
 
-    The pressure along -x is held by a force per volume along x.
+    The pressure pushes along -x, and a uniform body force along x holds the pin.
     """
     (lam, mu), kappa, solid = material.lame, 3.0 - 4.0 * material.poisson_ratio, hole == 0.0
     alpha = -3.0 / (8.0 * (lam + 2.0 * mu) * (1.0 - hole**2))
@@ -149,7 +153,7 @@ def _section(hole: float, material: Material) -> float:
     rows = np.vstack([_powers(1, r, kappa, solid)[2:] for r in ends])
     load = np.concatenate([-stress * r for r in ends])
     load[0] -= 1.0
-    constants = np.linalg.lstsq(rows, load)[0]  # one row follows from the others, by equilibrium
+    constants = np.linalg.lstsq(rows, load)[0]  # equilibrium makes one row redundant
 
     def moved(r: float) -> Floats:
         particular = np.array([alpha, beta]) * r**2
@@ -166,8 +170,8 @@ def _eye(wide: float, material: Material) -> float:
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
 
     def terms(r: float) -> Floats:
-        """The terms of `_powers`, and the pair with a resultant in proportions that give one
-        value.
+        """The terms of `_powers`, and the pair of terms with a resultant, combined so that the
+        displacement is single-valued.
         """
         k, ln = kappa, math.log(r)
         first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0

@@ -1,6 +1,6 @@
-"""Von Mises stress of a pin on foundations, from its section forces at points of its sections.
+"""The von Mises stress of a pin on foundations, from section forces, at points of its sections.
 
-Points nearer to sharp corners than the excluded distance are left out, as for other models.
+Points nearer to sharp corners than the excluded distance are left out, as in other models.
 """
 
 from __future__ import annotations
@@ -28,25 +28,27 @@ from fea.singular.singularities import find_singularities, outside
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from geometry import Pin
 
-SHOULDER_REACH = 0.5  # of the diameter: so far a sharp shoulder is felt
-# Of the diameter: a fillet nearer to the edge of a lug has its stress, too (up to 3 times the bound
-# at the edge, 1 in 9 beyond it at 0.1, none of 30 from 0.2 on)
+SHOULDER_REACH = 0.5  # distance, in diameters, up to which a sharp shoulder affects the stress
+# Distance, in diameters, below which a fillet also has the stress of a lug's edge. At the edge it
+# reaches up to 3 times the upper bound; at 0.1, 1 of 9 pins exceeds the bound; from 0.2 on none of
+# 30 does.
 MIN_FILLET_EDGE_DISTANCE = 0.15
 NEGLIGIBLE_STRESS_SHARE = 1e-6  # of the largest
 PRESSED_SHOULDER = "a shoulder whose face a force along the axis presses"
-# Force over area, of the largest stress: a pressed head has some ten times as much at its fillet
+# Axial force over area, relative to the largest stress, above which a pressed shoulder counts. The
+# fillet of a pressed head has about ten times that stress.
 PRESSED_SHOULDER_SHARE = 1e-3
-POINTS_PER_RADIUS = 17  # points of a segment at a radius, besides the ends of rings
+POINTS_PER_RADIUS = 17  # points along a segment at one radius, in addition to the ends of rings
 
 
 @dataclass(frozen=True)
 class FoundationStress:
-    """The part of a pin's stress that serves all loads.
+    """The stress of a pin on foundations per section force, which serves all loads.
 
-    r, z: of the points (S,), m.
-    per_force: (S, 6, 4), amplitudes there per V, M, N, T.
-    near: (S,) what shoulders may add, relative.
-    notches: those that are not excluded; their points are the last.
+    r, z: of the points, (S,) m.
+    per_force: amplitudes of the stress at the points per V, M, N, T, (S, 6, 4).
+    near: relative error that notches and sharp shoulders add at the points, (S,).
+    notches: the notches that are not excluded; their points come last.
     """
 
     model: FoundationModel
@@ -60,9 +62,9 @@ class FoundationStress:
     def of(cls, model: FoundationModel, distance: float = 0.1) -> Self:
         """The stress per section force of a pin on foundations.
 
-        distance: excluded at sharp corners, of the local diameter.
+        distance: excluded at sharp corners, as a fraction of the local diameter.
 
-        Raises: SolveError where nothing of the surface is outside of that.
+        Raises: SolveError where no part of the surface is outside the excluded distance.
         """
         pin, nu = model.whole, model.material.poisson_ratio
         corners = find_singularities(pin, (), (), nu, distance)
@@ -92,7 +94,7 @@ class FoundationStress:
 
     @property
     def bending(self) -> Floats:
-        """The axial stress per bending moment, (S,) 1/m^3."""
+        """The axial stress per bending moment at the points, (S,) 1/m^3."""
         return np.abs(self.per_force[:, ZZ, MOMENT])
 
     def von_mises(self, joint: JointFoundation) -> VonMisesMaxima:
@@ -100,9 +102,9 @@ class FoundationStress:
         return von_mises_maxima(self.harmonics(joint))
 
     def lacking(self, joint: JointFoundation, von_mises: Floats) -> list[str]:
-        """The reasons why notches that loads reach have no factor, or none that holds.
+        """The notches under load, and pressed shoulders, without a valid notch factor, in words.
 
-        von_mises: (S, T) Pa.
+        von_mises: at the points and instants, (S, T) Pa.
         """
         first = len(self.z) - len(self.notches)
         torque = np.abs(joint.along(self.z[first:])[1]).max(axis=0)
@@ -128,8 +130,8 @@ class FoundationStress:
         ]
 
     def harmonics(self, joint: JointFoundation) -> Floats:
-        """The stress, (3, S, 6, T): even, times cos theta, times sin theta, as fea.beam.maximum has
-        them.
+        """The stress, (3, S, 6, T): the part that is constant around the axis, the factor of cos
+        theta, and the factor of sin theta (fea.beam.maximum).
         """
         across = np.stack([-joint.shear_force(self.z), joint.bending_moment(self.z)], axis=-1)
         first, second = np.einsum("siq,tsaq->asit", self.per_force[:, :, :AXIAL], across)
@@ -145,7 +147,7 @@ Points = tuple[Floats, Floats, Floats]  # r, z and per_force
 
 
 def _shaft(pin: Pin, cuts: Floats, nu: float) -> Iterator[Points]:
-    """The points along every segment, at its surface and its bore or axis."""
+    """Yield the points along every segment, at its surface and at its bore or axis."""
     for (a, b), segment in zip(pairwise(pin.stations), pin.segments, strict=True):
         z = np.union1d(np.linspace(a, b, POINTS_PER_RADIUS), cuts[(cuts >= a) & (cuts <= b)])
         for r in (segment.diameter / 2.0, segment.bore / 2.0):
@@ -160,13 +162,13 @@ def _at(pin: Pin, notch: Notch, nu: float) -> Points:
 
 
 def _edges(model: FoundationModel) -> Floats:
-    """The edges of all lugs, z in m."""
+    """The z of the edges of all lugs, m."""
     bands = [model.whole.band(lug.connection) for lug in model.lugs]
     return np.array([z for band in bands for z in (band.z0, band.z1)])
 
 
 def _distance(pin: Pin, notch: Notch, edges: Floats) -> float:
-    """The distance of a shoulder's fillet, between its ends, from the nearest edge, m."""
+    """The distance of a shoulder's fillet from the nearest edge, m; zero for an edge within it."""
     corner = min(pin.stations, key=lambda z: abs(z - notch.z))
     radius = pin.fillet_at(pin.stations.index(corner) - 1)
     ends = corner, corner + math.copysign(radius, notch.z - corner)

@@ -1,13 +1,13 @@
-"""A Timoshenko beam that rests on Winkler foundations in its lugs, without discretisation.
+"""A Timoshenko beam on Winkler foundations in its lugs, without discretisation.
 
-With u the deflection against the bore, psi the slope of the section against the lug, k the
-stiffness of the foundation per length and q what else loads the beam along x,
+With u the deflection relative to the bore, psi the slope of the section relative to the lug, k the
+stiffness of the foundation per length, and q the other loads per length along x,
 
     u' = psi + V / (kappa G A)    psi' = M / (E I)    M' = -V    V' = k u - q
 
-so a piece takes the state at its start to that at its end by the exponential of a matrix, exactly.
-The states at all stations, the shifts of the lugs and their tilts are found together. Unlike a
-system of stiffnesses, which holds 12 E I / h^3, this one is well conditioned with short pieces.
+The state at the end of a piece is that at its start times the exponential of a matrix, exactly. The
+states at all stations and the shifts and tilts of the lugs are solved for together. A stiffness
+matrix, which contains 12 E I / h^3, is ill conditioned for short pieces; this system is not.
 
 Sources: M. Hetenyi, Beams on Elastic Foundation (1946), ch. II and V; S. P. Timoshenko, Phil. Mag.
 41 (1921) 744, for the shear.
@@ -24,22 +24,24 @@ from scipy.linalg import expm
 
 from fea.core.pin_loads import Floats
 
-# REACTION_INTEGRAL: the integral of k u; REACTION_DOUBLE_INTEGRAL: the integral of that.
+# Components of the state. REACTION_INTEGRAL is the integral of k u along the piece, and
+# REACTION_DOUBLE_INTEGRAL the integral of that integral.
 U, PSI, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, UNIT_LOAD = range(7)
 STATE_COUNT = 4
-# Of a foundation's length 1 / lambda: a piece is no longer, so that exponentials remain moderate.
+# Largest length of a piece over the foundation's length 1 / lambda, so that exponentials remain
+# moderate.
 MAX_FOUNDATION_LENGTHS = 1.0
 
 
 @dataclass(frozen=True)
 class SupportedBeam:
-    """The pieces (N,) of a beam between stations (N + 1,) m.
+    """The N pieces of a beam between stations (N + 1,) m.
 
-    bending: 1 / (E I), 1 / (N m^2).
-    shear: 1 / (kappa G A), 1 / N.
-    foundation: N/m^2, 0 outside lugs.
-    mass: kg/m.
-    lug: number of the lug that holds each, -1 for none.
+    bending: 1 / (E I), (N,) 1 / (N m^2).
+    shear: 1 / (kappa G A), (N,) 1 / N.
+    foundation: stiffness per length, (N,) N/m^2; 0 outside lugs.
+    mass: per length, (N,) kg/m.
+    lug: number of the lug that holds each piece, -1 for none, (N,).
     """
 
     stations: Floats
@@ -55,13 +57,14 @@ class SupportedBeam:
 
 @dataclass(frozen=True)
 class Response:
-    """The reaction of the lugs on the pieces of a beam under P loads: one newton on each lug, a
-    body force of 1 m/s^2, and a couple of 1 N m on each lug.
+    """The reactions of the lugs on the pieces of a beam under P unit loads: a force of 1 N on each
+    lug, a body force of 1 m/s^2, and a couple of 1 N m on each lug.
 
-    A couple turns a force along x towards z; on a guided lug it does nothing.
-
-    force: (N, P), N, and moment: (N, P), N m, about the middles of the pieces, of forces along x.
-    The fixed lugs react the remainder of each load; one newton on one of them does nothing.
+    A positive couple is a moment about y, the sum of forces along x times their z. Fixed lugs react
+    the remainder of each load; a force on a fixed lug has no effect, nor has a couple on a guided
+    lug.
+    force: along x on each piece, (N, P) N.
+    moment: of the forces along x about the middle of each piece, (N, P) N m.
     """
 
     force: Floats
@@ -69,7 +72,10 @@ class Response:
 
 
 def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
-    """The stations, m, with pieces (N,) cut where they are long for the foundation they are on."""
+    """The stations, m, with pieces divided that are long compared with their foundation's length.
+
+    bending: 1 / (E I) of the pieces, (N,). foundation: their stiffness per length, (N,) N/m^2.
+    """
     length = np.diff(stations)
     waves = length * (foundation * bending / 4.0) ** 0.25
     counts = np.maximum(1, np.ceil(waves / MAX_FOUNDATION_LENGTHS)).astype(int)
@@ -81,20 +87,20 @@ def refined(stations: Floats, bending: Floats, foundation: Floats) -> Floats:
 
 
 def respond(
-    beam: SupportedBeam, middles: Floats, tilt: Sequence[float], still: Sequence[int] = (0,)
+    beam: SupportedBeam, middles: Floats, tilt: Sequence[float], fixed: Sequence[int] = (0,)
 ) -> Response:
     """The response of a beam in its lugs.
 
-    middles: of the lugs, (B,) m.
-    tilt: N m/rad of the lugs' tilt, inf guided, 0 free.
-    still: the fixed lugs; where there is one, and all are free to tilt, it is guided and reacts the
-    remaining couple.
+    middles: z of the middles of the lugs, (B,) m.
+    tilt: tilt stiffness of the lugs, (B,) N m/rad; inf: guided, 0: free.
+    fixed: numbers of the fixed lugs. If there is only one and all lugs are free to tilt, it is
+    guided and reacts the remaining couple.
     """
     length = float(beam.stations[-1] - beam.stations[0]) / len(beam)
-    stiff = 1.0 / float(beam.bending.max() * length**2)  # N; makes numbers near 1 of all
+    stiff = 1.0 / float(beam.bending.max() * length**2)  # N; scales all numbers to about 1
     held = np.asarray(tilt, dtype=float) / (stiff * length)
-    if len(still) == 1 and not held.any():
-        held[still[0]] = np.inf
+    if len(fixed) == 1 and not held.any():
+        held[fixed[0]] = np.inf
     unit = replace(
         beam,
         stations=beam.stations / length,
@@ -103,22 +109,26 @@ def respond(
         foundation=beam.foundation * length**2 / stiff,
         mass=beam.mass * length,
     )
-    response = _System(unit, np.asarray(middles) / length, held, still).solve()
+    response = _System(unit, np.asarray(middles) / length, held, fixed).solve()
     per = np.ones(response.force.shape[1])
-    per[len(middles) + 1 :] = 1.0 / length  # of 1 N m, instead of one newton times `length`
+    per[len(middles) + 1 :] = 1.0 / length  # couples of 1 N m instead of 1 N times `length`
     return Response(response.force * per, response.moment * length * per)
 
 
 class _System:
-    """The states (w, phi, M, V) at all stations, then shift and tilt of each lug, as one vector."""
+    """The system of equations for the states (w, phi, M, V) at all stations and the shift and tilt
+    of each lug.
+
+    w and phi are absolute: they include shift and tilt of the lug.
+    """
 
     def __init__(
-        self, beam: SupportedBeam, middles: Floats, tilt: Floats, still: Sequence[int]
+        self, beam: SupportedBeam, middles: Floats, tilt: Floats, fixed: Sequence[int]
     ) -> None:
-        self.beam, self.middles, self.tilt, self.still = beam, middles, tilt, still
+        self.beam, self.middles, self.tilt, self.fixed = beam, middles, tilt, fixed
         self.lengths = np.diff(beam.stations)
         self.steps = expm(_rates(beam) * self.lengths[:, None, None])
-        self.motions = STATE_COUNT * (len(beam) + 1)  # where the lugs' begin
+        self.motions = STATE_COUNT * (len(beam) + 1)  # number of the first shift of a lug
         self.size = self.motions + 2 * len(middles)
         self.starts = np.stack([self._against(i, 0) for i in range(len(beam))])
 
@@ -129,14 +139,14 @@ class _System:
             matrix[rows] = self._against(i, 1) - step[:STATE_COUNT, :STATE_COUNT] @ self.starts[i]
             loads[rows, self._body] = step[:STATE_COUNT, UNIT_LOAD]
         last = self.motions - STATE_COUNT
-        free = [M, V, last + M, last + V]  # nothing acts on the ends
+        free = [M, V, last + M, last + V]  # M and V are zero at both ends
         matrix[last + np.arange(STATE_COUNT), free] = 1.0
         self._hold(matrix[self.motions :], loads[self.motions :])
         return self._response(np.asarray(np.linalg.solve(matrix, loads), dtype=np.float64))
 
     @property
     def _body(self) -> int:
-        """The number of the load that is the body force; forces come before it, couples after."""
+        """The number of the body force among the loads; forces come before it, couples after."""
         return len(self.middles)
 
     @property
@@ -144,7 +154,9 @@ class _System:
         return 2 * len(self.middles) + 1
 
     def _against(self, i: int, end: int) -> Floats:
-        """The state at the start (0) or end (1) of a piece against its lug, (STATE_COUNT, size)."""
+        """The state at the start (0) or end (1) of a piece relative to its lug, as a matrix
+        (STATE_COUNT, size) on the unknowns.
+        """
         out, lug = np.zeros((STATE_COUNT, self.size)), int(self.beam.lug[i])
         at = STATE_COUNT * (i + end)
         out[:, at : at + STATE_COUNT] = np.eye(STATE_COUNT)
@@ -154,16 +166,16 @@ class _System:
         return out
 
     def _hold(self, rows: Floats, loads: Floats) -> None:
-        """Add the equations of the lugs: a force, or no shift, and a couple each."""
+        """Set the equations of each lug: its force, or no shift if it is fixed, and its couple."""
         for b, stiffness in enumerate(self.tilt.tolist()):
             force, couple = self._reactions(b)
-            if b in self.still:
+            if b in self.fixed:
                 rows[2 * b] = np.eye(self.size)[self.motions + 2 * b]
             else:
                 rows[2 * b], loads[2 * b, b] = force[:-1], 1.0
                 loads[2 * b, self._body] = -force[-1]
             turn = np.eye(self.size)[self.motions + 2 * b + 1]
-            if np.isfinite(stiffness):  # scaled so that very stiff and very soft are harmless
+            if np.isfinite(stiffness):  # scaled, so that extreme stiffnesses do no harm
                 turn = (stiffness * turn + couple[:-1]) / (1.0 + stiffness)
                 loads[2 * b + 1, self._body] = -couple[-1] / (1.0 + stiffness)
                 loads[2 * b + 1, self._body + 1 + b] = 1.0 / (1.0 + stiffness)
@@ -173,7 +185,7 @@ class _System:
         """The force and the couple about its middle that a lug exerts on the beam, (size + 1,)
         each.
 
-        They are linear in the states and, last, in the body force.
+        Both are linear in the unknowns and, with the last coefficient, in the body force.
         """
         force, couple = np.zeros(self.size + 1), np.zeros(self.size + 1)
         for i in np.flatnonzero(self.beam.lug == lug).tolist():
@@ -197,7 +209,7 @@ class _System:
 
 
 def _rates(beam: SupportedBeam) -> Floats:
-    """The matrices (N, 7, 7) that give the derivatives of each piece's state.
+    """The matrices (N, 7, 7) of the derivatives of the state along each piece.
 
     The state is (u, psi, M, V, REACTION_INTEGRAL, REACTION_DOUBLE_INTEGRAL, 1).
     """

@@ -1,9 +1,9 @@
 """The range of a pin's maximum over uncertain properties of its joint, by beams on foundations.
 
-At one instant, as fea.support.contact.variations has it by contact: other clearances, lugs half
-and twice as stiff, tilt free and guided, all in milliseconds. A beam's maximum is only as good as
-its bounds, so that the range reaches from the least lower to the largest upper one. Of clearance
-the beam knows no more than these.
+The joint is varied as in fea.support.contact.variations, which takes milliseconds here: other
+clearances, lugs half and twice as stiff, tilt free and guided. A beam's maximum is only as accurate
+as its bounds, so that the range extends from the least lower bound to the largest upper bound.
+Clearance affects nothing but the bounds.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from fea.support.contact.bending import growth_across, growth_of_lugs
 from fea.support.foundation.bounds import StressBounds, band_forces, stress_bounds
 from fea.support.foundation.foundation_model import FoundationModel, JointFoundation
 from fea.support.foundation.stress import FoundationStress
-from fea.support.lugs.changes import JointChange, joint_variations, pressed_in, with_stiffness
+from fea.support.lugs.changes import JointChange, joint_variations, pressed_in, softened
 from fea.support.lugs.fit import beyond_foundations
 from fea.support.lugs.lug import Lug
 from fea.support.records import JointRange, JointResult, Variation
@@ -31,9 +31,11 @@ from pinbase.arrays import Ints
 class FoundationRange:
     """The range of a pin's maximum over its joint, for all cases.
 
-    assumed: whether its lugs are assumed.
+    distance: excluded at sharp corners, as a fraction of the local diameter.
+    assumed: whether the lugs are assumed.
 
-    Raises: ValueError for lugs that do not fit; SolveError for lugs that it cannot answer.
+    Raises: ArgumentError for lugs that do not fit; SolveError for a joint that a beam on
+    foundations cannot represent.
     """
 
     def __init__(
@@ -43,20 +45,21 @@ class FoundationRange:
             raise SolveError(reason, "beyond-foundations")
         self.assumed = assumed
         self.own = FoundationStress.of(FoundationModel(pin, material, lugs), distance)
-        self._in_lugs: dict[str, FoundationStress | None] = {}  # of joints that were changed
+        self._in_lugs: dict[str, FoundationStress | None] = {}  # for each change of the joint
 
     def at(
         self, loads: PinLoads, own: JointFoundation | None = None
     ) -> tuple[JointRange | None, str]:
-        """The range over all instants, and the variations it leaves out, or the reason why there
-        is none.
+        """Return the range over all instants with a remark on the variations that it leaves out; if
+        there is no range, None and the reason.
 
         own: the joint as given under these loads, where it is known.
+
         Raises: SolveError as FoundationModel.solve.
         """
         own = own or self.own.model.solve(loads)
         if len(loads) > 1:
-            loads = loads.at(_that_may_govern(self.own, own))
+            loads = loads.at(_governing_candidates(self.own, own))
             own = self.own.model.solve(loads)
         given = stress_bounds(self.own, own)
         if given.bounds is None:
@@ -93,7 +96,7 @@ def _variation(
 ) -> Variation:
     """The maximum with the joint changed.
 
-    joints, stress: of the changed joint and of that as given.
+    joints: the changed joint and the joint as given. stress: the bounds of both.
     """
     (held, own), (of_joint, given) = joints, stress
     return Variation(
@@ -111,8 +114,10 @@ def _variation(
 def _held(
     model: FoundationModel, loads: PinLoads
 ) -> tuple[JointFoundation | None, list[SolveError]]:
-    """The joint at all instants at which its lugs hold the pin, and why they do not at others: lugs
-    free to tilt may leave a couple on it.
+    """Return the joint at the instants at which its lugs hold the pin, None if there are none, and
+    the errors at the other instants.
+
+    Lugs that are free to tilt may leave a couple on the pin.
     """
     try:
         return model.solve(loads), []
@@ -125,9 +130,12 @@ def _held(
     return (model.solve(loads.at(held)) if len(held) else None), errors
 
 
-def _that_may_govern(stress: FoundationStress, joint: JointFoundation) -> Ints:
-    """The instants of the largest stress of the surface and on the axis, of the largest bending
-    moment and of the largest force of each lug: what is smaller as given may grow more.
+def _governing_candidates(stress: FoundationStress, joint: JointFoundation) -> Ints:
+    """The instants that may govern in a varied joint.
+
+    They are those of the largest stress of the surface and on the axis, of the largest bending
+    moment, and of the largest force of each lug: a value that is smaller with the joint as given
+    may grow more.
     """
     von_mises, on_axis = stress.von_mises(joint).von_mises, stress.r == 0.0
     moment = np.linalg.norm(joint.bending_moment(np.unique(stress.z)), axis=2).max(axis=1)
@@ -142,10 +150,10 @@ def prescribed_ranges(
     loads: Sequence[PinLoads | None],
     how: tuple[float, bool],
 ) -> tuple[JointResult | None, ...]:
-    """The ranges of a pin with another support, as if it sat in these lugs.
+    """The ranges of a pin with prescribed loads, as if lugs held it.
 
-    loads: at the governing instants of its cases, None where there is none.
-    how: distance and assumed, as of FoundationRange.
+    loads: at the governing instant of each case, None where there is none.
+    how: `distance` and `assumed` of FoundationRange.
     """
     try:
         over = FoundationRange(pin, material, lugs, *how)
@@ -164,8 +172,8 @@ def _prescribed(over: FoundationRange, loads: PinLoads) -> JointResult:
 
 
 def _changed(given: FoundationStress, change: JointChange) -> FoundationStress | None:
-    """The stress in lugs that are changed; None where the pin is pressed into one, whose stress a
-    beam does not know.
+    """The stress in the changed joint; None where the pin is pressed into a lug, since a beam does
+    not have the stress of a press fit.
     """
     if pressed_in(change):
         return None
@@ -173,6 +181,6 @@ def _changed(given: FoundationStress, change: JointChange) -> FoundationStress |
         other = given.model.with_clearances(list(change.lugs))
     else:
         both = zip(change.lugs, change.softness, strict=True)
-        lugs = [with_stiffness(*x) for x in both]
+        lugs = [softened(*x) for x in both]
         other = FoundationModel(given.model.given, given.model.material, lugs)
     return replace(given, model=other)

@@ -1,3 +1,1 @@
-"""The surroundings of a pin: eyes, their fit, their links, and the rings into which bands are
-cut.
-"""
+"""The lugs of a pin: their eyes, fits, links, axial seats and variations."""

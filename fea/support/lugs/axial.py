@@ -1,8 +1,9 @@
-"""Where the forces of links along a pin's axis enter it.
+"""The seats at which axial forces of links enter a pin.
 
 A link bears on the nearest shoulder on the side to which it pushes, if no other lug is between, or
-on what the study names: a head, a collar, a nut. Elsewhere its force is a shear over its band that
-fades towards the edges (friction, a press fit). Torques are always so: a key or a press fit.
+on the segment that the study names: a head, a collar, a nut. Otherwise its force is a shear over
+its band that fades towards the edges (friction, a press fit). Torques always are such shears (a
+key, a press fit).
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ SAME_DIAMETER = 1e-9  # relative: a segment that is thicker by less is no should
 
 
 def axial_seats(pin: Pin, lugs: Sequence[Lug]) -> dict[str, tuple[str, str]]:
-    """The surfaces that take the force of each link towards the start of a pin and towards its end,
-    by connection; none for a link that bears on its own band.
+    """The surfaces that take the axial force of each link, towards the start of the pin and towards
+    its end, by connection; a link that bears on its own band in both senses has no entry.
 
-    Raises: ArgumentError for a lug whose `axial` is not of the pin, or of a link.
+    Raises: ArgumentError for a lug whose `axial` names no segment of the pin, a segment on which
+    another link bears, or a segment on the wrong side.
     """
     out = {}
     for lug in lugs:
@@ -41,11 +43,12 @@ def axial_seats(pin: Pin, lugs: Sequence[Lug]) -> dict[str, tuple[str, str]]:
 
 
 def structure_reacts(pin: PinLike, lugs: Sequence[Lug], mass: float, loads: PinLoads) -> PinLoads:
-    """The loads with what lugs of a structure exert along the axis and about it, for balance.
+    """The loads with the axial forces and torques that lugs of a structure exert for balance.
 
-    Those take a force that push the pin against a shoulder, or what they name, in its sense; where
-    none does, all take it, and always a torque, even over their bands, as a key, a bolt or a press
-    fit in the structure would.
+    The lugs that bear on a shoulder or a named segment in the sense of the reaction share the axial
+    force. Where there are none, all lugs of the structure take the force, in proportion to the
+    lengths of their bands. All of them always take the torque in this way, as a key, a bolt or a
+    press fit in the structure would.
     mass: of the pin, kg.
     """
     names = [lug.connection for lug in lugs if lug.connection not in pin.connections]
@@ -68,7 +71,7 @@ def structure_reacts(pin: PinLike, lugs: Sequence[Lug], mass: float, loads: PinL
 
 
 def pulled(pin: PinLike, lugs: Sequence[Lug], loads: PinLoads, mass: float) -> bool:
-    """Whether lugs of a structure must react a force along the axis or a torque about it."""
+    """Whether lugs of a structure must react an axial force or a torque."""
     if all(lug.connection in pin.connections for lug in lugs):
         return False
     force = np.abs(loads.forces[:, :, 2].sum(axis=1) + mass * loads.body[:, 2])
@@ -80,7 +83,9 @@ def pulled(pin: PinLike, lugs: Sequence[Lug], loads: PinLoads, mass: float) -> b
 
 
 def _shoulder(pin: Pin, lug: Lug, step: int) -> str:
-    """The face of the nearest shoulder on one side (step -1 or 1), else the band itself."""
+    """The face of the nearest shoulder on one side (step -1 or 1); the band itself if there is
+    none.
+    """
     i = pin.labels.index(lug.connection)
     bore = pin.segments[i].diameter * (1.0 + SAME_DIAMETER)
     while 0 <= i + step < len(pin.segments):
@@ -95,8 +100,8 @@ def _shoulder(pin: Pin, lug: Lug, step: int) -> str:
 
 
 def _stated(pin: Pin, lug: Lug, side: int) -> str:
-    """The surface of the segment that a lug names for one side (0 start, 1 end): the face that it
-    turns to the lug, or else its outer surface.
+    """The surface of the segment that a lug names for one side (0 start, 1 end): its face towards
+    the lug if it has one, otherwise its outer surface.
     """
     assert lug.axial is not None
     name, what = lug.axial[side], f"lug {lug.connection}: axial"
@@ -115,7 +120,7 @@ def _stated(pin: Pin, lug: Lug, side: int) -> str:
             "along the axis, as a head, a collar or a nut",
             "axial-on-band",
         )
-    if len(set(lug.axial)) == 1:  # held both ways: no face can pull
+    if len(set(lug.axial)) == 1:  # one segment holds both ways, and a face cannot pull
         return name
     if (i > of_lug) != (side == 1):
         raise ArgumentError(
@@ -130,7 +135,9 @@ def _stated(pin: Pin, lug: Lug, side: int) -> str:
 
 
 def seats_note(links: PinLoads, lugs: Sequence[Lug]) -> Reason | None:
-    """Return what takes the axial forces of a case, as the end of a note; None without any."""
+    """Return the seats of the axial forces of a case as the end of a note; None without such
+    forces.
+    """
     names = {lug.connection for lug in lugs}
     parts = []
     for c, name in enumerate(links.surfaces):

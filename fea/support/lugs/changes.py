@@ -1,9 +1,9 @@
 """Variations of the uncertain properties of a joint, to see which results depend on them.
 
-By default a clearance goes from none to twice the given one (to a free running fit where none is
-given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have ranges
-of its own. Both ends of each range are tried, for all lugs at once, alone and together with the
-ends of the other properties. What a temperature adds to a clearance (Lug.growth) is not varied.
+By default a clearance ranges from zero to twice the given one (to a free running fit where none is
+given), the lugs are half and twice as stiff, and the tilt is free and guided. A lug may have its
+own ranges. Both ends of each range are tried for all lugs at once, alone and together with the ends
+of the other properties. The part of a clearance that temperature adds (Lug.growth) is not varied.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ TILT = "tilt"
 class JointChange:
     """A joint with one property changed, or with several together.
 
-    what, value: the property, and its value in words.
-    lugs: with the change.
-    softness: how many times softer each lug is.
-    length: the value, m, if it is a length, the largest of all lugs.
+    what, value: name of the property, and its value in words.
+    lugs: with the change, but for their stiffness.
+    softness: factor on the compliance of each lug.
+    length: the value if it is a length, the largest of all lugs, m.
     """
 
     what: str
@@ -42,7 +42,7 @@ class JointChange:
 
 
 def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
-    """The variations of the lugs on a pin's bands, one property at a time, then all together,
+    """Yield the variations of the lugs of a pin: one property at a time, then several together,
     without those that change nothing.
     """
     same = (1.0,) * len(lugs)
@@ -65,11 +65,12 @@ def joint_variations(pin: Pin, lugs: Sequence[Lug]) -> Iterator[JointChange]:
 
 
 def _corners(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> Iterator[JointChange]:
-    """Several properties at once, each at one of its ends, in every combination.
+    """Yield every combination of two or more properties, each at one end of its range.
 
-    What each does alone does not tell which: in a clearance stiff lugs may raise the stress that
-    without it soft ones raise. Of a property with one change the other end is as given, and tilt is
-    so, too: some lugs may be free and others guided, which is no end of what all may be.
+    All combinations are needed, since the effects of single properties do not show the worst one:
+    with clearance stiff lugs may raise a stress that without clearance soft lugs raise. Where a
+    property has only one change, its other end is the given value. Tilt may also be as given in a
+    combination: some lugs may be free and others guided, which is neither of its ends.
     """
     by_property: dict[str, list[JointChange]] = {}
     for change in changes:
@@ -84,7 +85,7 @@ def _corners(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> Iterator[Jo
 
 
 def combined(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> JointChange:
-    """Several changes at once, of one property each."""
+    """The change that makes several changes at once, each of another property."""
     whole, softness = list(lugs), [1.0] * len(lugs)
     for change in changes:
         for k, (given, lug) in enumerate(zip(lugs, change.lugs, strict=True)):
@@ -98,13 +99,13 @@ def combined(lugs: Sequence[Lug], changes: Sequence[JointChange]) -> JointChange
 
 
 def pressed_in(change: JointChange) -> bool:
-    """Whether the pin is pressed into a lug of a joint that is changed so."""
+    """Whether the pin is pressed into a lug of the changed joint."""
     return any(lug.clearance < 0.0 for lug in change.lugs)
 
 
-def with_stiffness(lug: Lug, times: float) -> Lug:
-    """The lug, and its bushing, so many times as stiff."""
-    return lug.with_materials(lambda m: replace(m, youngs_modulus=m.youngs_modulus / times))
+def softened(lug: Lug, softness: float) -> Lug:
+    """The lug and its bushing with their moduli divided by a factor."""
+    return lug.with_materials(lambda m: replace(m, youngs_modulus=m.youngs_modulus / softness))
 
 
 def _with_clearance(pin: Pin, lug: Lug, end: int) -> tuple[Lug, str]:

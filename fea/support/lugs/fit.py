@@ -1,8 +1,8 @@
-"""Checks that lugs fit a pin, made before anything is computed.
+"""Checks that lugs fit a pin, made before anything is computed, and the stress of press fits.
 
-Interference presses pin and eye as tubes one in the other, of which every wall follows Lame with
-free ends: u = r / E (s_tt - nu s_rr), s = A -+ B / r^2. Beyond a few times the interference that
-yields one of them linear elasticity does not apply.
+Under interference, pin, bushing and eye are tubes pressed into each other. Each wall follows Lame's
+solution with free ends: u = r / E (s_tt - nu s_rr), s_rr, s_tt = A -+ B / r^2. Linear elasticity
+does not apply beyond a few times the interference at which one of them yields.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from fea.support.lugs.lug import Lug
 from geometry import ArgumentError, Band, Pin, PinLike
 
 MAX_CLEARANCE = 0.1  # of the pin's diameter
-MAX_INTERFERENCE_RATIO = 5.0  # times what yields pin, bushing or lug
-MIN_WALL = 1e-3  # of an eye or a bushing, of the pin's diameter
+MAX_INTERFERENCE_RATIO = 5.0  # times the interference at which pin, bushing or lug yields
+MIN_WALL = 1e-3  # least wall of an eye or a bushing, over the pin's diameter
 
-Wall = tuple[float, float, Material]  # inner and outer radius, m
+Wall = tuple[float, float, Material]  # inner and outer radius, m, and material
 
 
 def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
-    """The same pin with bands in lugs of the structure (by the segments' names) among its
-    connections.
+    """The pin with the bands in lugs of the structure among its connections, by the names of their
+    segments.
     """
     held = {lug.connection for lug in lugs} - set(pin.connections)
     if not held:
@@ -43,8 +43,9 @@ def on_structure(pin: Pin, lugs: Sequence[Lug]) -> Pin:
 def balance_in_lugs(
     pin: PinLike, lugs: Sequence[Lug], case: PinLoads, density: float | None
 ) -> Balance:
-    """The balance of a case's loads on an unclamped pin, less what its lugs carry."""
-    tilting = case.tilting_links(pin.length)  # whose lugs react no moment across the axis
+    """The balance of a case's loads on an unclamped pin, without the loads that its lugs carry."""
+    # The lugs of links that state moments react no moment across the axis.
+    tilting = case.tilting_links(pin.length)
     structure = sum(lug.connection not in pin.connections for lug in lugs)
     tilts = any(lug.tilt > 0.0 and lug.connection not in tilting for lug in lugs)
     carried = Carried(
@@ -56,12 +57,13 @@ def balance_in_lugs(
 def fitted(
     pin: Pin, material: Material, lugs: Sequence[Lug], in_contact: bool = True
 ) -> tuple[Lug, ...]:
-    """The lugs in the order of the pin's bands.
+    """The lugs in the order of the pin's bands, checked to fit them.
 
-    in_contact: whether contact with them is solved; formulas alone take any clearance.
+    in_contact: whether contact with the lugs is solved. Formulas take any clearance that leaves a
+    wall in the eye.
 
-    Raises: ArgumentError for a lug where no link bears, a band without one, or a lug that does not
-    fit its band.
+    Raises: ArgumentError for a lug without a band, a band without a lug, or a lug that does not fit
+    its band.
     """
     named = {lug.connection: lug for lug in lugs}
     if len(named) < len(lugs) or set(named) != set(pin.connections):
@@ -75,7 +77,7 @@ def fitted(
         _require_walls(lug, band)
         _require_gap(lug, band, in_contact)
         if lug.shank is not None:
-            lug.outline(band.radius)  # raises what is wrong with it
+            lug.outline(band.radius)  # raises an error for contradictory dimensions
         _require_elastic(lug, band, bores[lug.connection] / 2.0, material)
     return tuple(named[connection] for connection in pin.connections)
 
@@ -147,11 +149,11 @@ def _require_elastic(lug: Lug, band: Band, bore: float, material: Material) -> N
 
 
 def yielding_interference(lug: Lug, radius: float, bore: float, material: Material) -> float:
-    """The interference of the diameters, m, at which a wall begins to yield (von Mises), without
-    other loads.
+    """The interference on the diameter, m, at which a wall begins to yield (von Mises) without
+    other loads; inf where no material has a yield strength.
 
-    It is inf where no material has a yield strength.
-    radius, bore: of the pin, both radii, m.
+    radius, bore: outer and bore radius of the pin, m.
+    material: of the pin.
     """
     walls = [(bore, radius, material), *_walls(lug, radius)]
     return min(_reserve(walls, _press_fit(walls)))
@@ -160,12 +162,13 @@ def yielding_interference(lug: Lug, radius: float, bore: float, material: Materi
 def press_fit_stresses(
     lug: Lug, radius: float, bore: float, pin: Material
 ) -> Iterator[tuple[Material, float]]:
-    """Yield the material of the pin, of the bushing and of the eye, and the largest von Mises
-    stress (Pa) in each, by their press fits alone: of the pin in its bore, and of the bushing in
-    its hole, with the interferences in their ranges that stress it most. In a bushing the two
-    relieve each other.
+    """Yield the material of the pin, of the bushing and of the eye, each with its largest von Mises
+    stress, Pa, by the press fits alone.
 
-    radius, bore: of the pin, both radii, m.
+    The fits are those of the pin in its bore and of the bushing in its hole. Each part is judged at
+    the interferences in their ranges that stress it most. In a bushing the two fits relieve each
+    other.
+    radius, bore: outer and bore radius of the pin, m.
 
     Source: AFFDL-TR-69-42, 9.16, superposed.
     """
@@ -180,14 +183,14 @@ def press_fit_stresses(
 
 
 def bushing_press_fit(lug: Lug, radius: float) -> Floats:
-    """The constants A and B (2, 2), Pa and Pa m^2, of s_rr, s_tt = A -+ B / r^2 in a bushing and
-    the eye about it, per interference of their diameters, m.
+    """The constants A and B of s_rr, s_tt = A -+ B / r^2 in a bushing and in the eye around it, (2,
+    2), Pa and Pa m^2 per metre of interference on the diameter.
     """
     return _press_fit(_walls(lug, radius))
 
 
 def _walls(lug: Lug, radius: float) -> list[Wall]:
-    """The tubes about a band of some radius, m."""
+    """The walls of the lug, and of its bushing, around a band of a radius, m."""
     outer = lug.outer_diameter / 2.0
     if lug.bushing is None:
         return [(radius, outer, lug.material)]
@@ -196,7 +199,10 @@ def _walls(lug: Lug, radius: float) -> list[Wall]:
 
 
 def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
-    """The yield strength over the von Mises stress of each wall under an interference of 1 m."""
+    """Yield inf and, for each wall with a yield strength, the interference at which it yields, m.
+
+    fields: constants A and B for an interference of 1 m.
+    """
     yield math.inf
     for (inner, _, material), (a, b) in zip(walls, fields, strict=True):
         if material.yield_strength is not None:
@@ -204,19 +210,21 @@ def _reserve(walls: Iterable[Wall], fields: Floats) -> Iterable[float]:
 
 
 def _largest(inner: float, constants: Sequence[float] | Floats) -> float:
-    """The largest von Mises stress, Pa, in a wall, which is at its inside: sqrt(A^2 + 3 B^2 / r^4).
+    """The largest von Mises stress in a wall, Pa: sqrt(A^2 + 3 B^2 / r^4) at its inner radius.
 
-    inner: its inner radius, m, 0 of a solid wall, where B is 0. constants: A and B.
+    inner: inner radius, m; 0 for a solid pin, where B is 0.
+    constants: A and B.
     """
     a, b = constants
     return math.hypot(a, math.sqrt(3.0) * b / inner**2 if inner > 0.0 else 0.0)
 
 
 def _press_fit(walls: Sequence[Wall]) -> Floats:
-    """The constants A and B (walls, 2), Pa and Pa m^2, of s_rr, s_tt = A -+ B / r^2 in tubes one in
-    the other.
+    """The constants A and B of s_rr, s_tt = A -+ B / r^2 in tubes inside each other, (walls, 2), Pa
+    and Pa m^2.
 
-    The first is pressed into the second by 1 m of the diameters; the others are bonded.
+    The first tube is pressed into the second with an interference of 1 m on the diameter; the
+    others are bonded.
     """
     size = 2 * len(walls)
     system, right = np.zeros((size, size)), np.zeros(size)
@@ -239,13 +247,13 @@ def _press_fit(walls: Sequence[Wall]) -> Floats:
 
 
 def widening(r: float, material: Material) -> Floats:
-    """The factors of A and B in u_r at a radius, m, of a tube."""
+    """The factors of A and B in the radial displacement of a tube at a radius r, m."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     return np.array([r * (1.0 - nu) / E, (1.0 + nu) / (E * r)])
 
 
 def beyond_foundations(pin: Pin, lugs: Iterable[Lug]) -> str:
-    """The property of pin and lugs that a beam on foundations cannot represent, if any."""
+    """The reason why a beam on foundations cannot represent the joint; empty if it can."""
     if not pin.stepped:
         return f"pin {pin.name} has cones or rounded edges, and its beams have only cylinders"
     for lug in lugs:

@@ -1,12 +1,11 @@
-"""The loads of links on a pin in its lugs: one lug for each band, forces in balance with the
-body's.
+"""The loads of links on a pin in its lugs, in balance with the body force of the pin.
 
-Lugs on bands where no link bears are those of a structure, which holds still: together they take
-the remainder of the links' loads.
+Each band has one lug. Lugs on segments on which no link bears belong to a fixed structure. Together
+they react the resultant of the links' loads and the body force.
 
-A link that states a moment across the axis brings exactly this one to the pin: statics of the link
-determines it, so that its lug turns until the pressure has this couple about the band's middle, and
-the stiffness of its tilt does not matter. The other lugs react what is left by their tilt.
+A link that states a moment across the axis transmits exactly this moment to the pin, since statics
+of the link determines it. Its lug tilts until the pressure has this couple about the band's middle,
+so that its tilt stiffness does not matter. The other lugs react the remaining couple by their tilt.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from geometry import Pin
 
 
 def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np.int64]:
-    """The number of each band's link (B,); the structure comes after the last one."""
+    """The number of each band's link, (B,); the structure counts as a link after the last one."""
     number = {name: k for k, name in enumerate(links)}
     return np.array([number.get(name, len(links)) for name in connections], dtype=np.int64)
 
@@ -32,14 +31,15 @@ def link_numbers(connections: Sequence[str], links: Sequence[str]) -> NDArray[np
 def link_forces(
     pin: Pin, mass: float, loads: PinLoads, structure: bool = False, whole: bool = True
 ) -> Floats:
-    """The forces of the links along x and y by connection, (T, L, 2) N.
+    """The forces of the links along x and y, for each connection, (T, L, 2) N.
 
-    The last is that of the structure, if it has any of the lugs. A small imbalance with the body
-    force, as where a weight is rounded, is shared by the links.
+    If a structure has some of the lugs, its force comes last and balances the others. Otherwise the
+    links share a small imbalance with the body force, as from a rounded weight.
     mass: of the pin, kg.
-    whole: false for a part of loads, whose imbalance need not be small.
+    structure: whether a structure has some of the lugs.
+    whole: false for a part of the loads, whose imbalance need not be small.
 
-    Raises: SolveError where it is not small.
+    Raises: SolveError where the imbalance of whole loads is not small.
     """
     out = np.zeros((len(loads), len(pin.connections), 2))
     for b, connection in enumerate(pin.connections):
@@ -72,16 +72,16 @@ def link_moments(
     forces: Floats,
     weight: tuple[float, float],
 ) -> Floats:
-    """The moments about x and y that the links bring to the pin at each of its bands, (T, B, 2)
-    N m, about the band's middle; zero where none is stated.
+    """The moments about x and y that the links transmit to the pin at each band, (T, B, 2) N m,
+    about the band's middle; zero for links that state none.
 
     Where no other lug reacts couples, the links that state moments share a small imbalance.
-    pins: the pin, and the same with the bands of a structure.
-    lugs: in the order of the bands; none for a part of loads, whose imbalance nobody shares.
+    pins: the pin without and with the bands of a structure.
+    lugs: in the order of the bands; empty for a part of the loads, whose imbalance is not shared.
     forces: of the links (`link_forces`).
     weight: mass of the pin, kg, and z of its centre, m.
 
-    Raises: SolveError where the imbalance is not small.
+    Raises: SolveError where an imbalance that no other lug reacts is not small.
     """
     given, pin = pins
     tilting, names = tilting_bands(pin, loads), pin.connections

@@ -1,4 +1,4 @@
-"""The surroundings of a band of a pin: the eye of a link, with or without a bushing."""
+"""The lug around a band of a pin: the eye of a link, with or without a bushing."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from geometry.shape.lug_outline import HeadShape, LugOutline
 
 @dataclass(frozen=True)
 class Bushing:
-    """A ring of its own material in an eye; thickness in m.
+    """A bushing in an eye, with a material of its own.
 
-    interference: of the diameters before it was pressed in, m; 0 for a bonded ring.
-    outgrown: by how much its outer diameter has outgrown the hole at the temperature of a case, m.
+    thickness: of its wall, m.
+    interference: on the diameter, before it was pressed in, m; 0 for a bonded bushing.
+    outgrown: change of the interference with the temperature of a case, m.
 
     Raises: ArgumentError for a thickness that is not positive.
     """
@@ -31,12 +32,14 @@ class Bushing:
 
     @property
     def pressed(self) -> bool:
-        """Whether it is pressed in; otherwise it is bonded."""
+        """Whether the bushing is pressed in; otherwise it is bonded."""
         return self.interference > 0.0
 
     @property
     def misfit(self) -> float:
-        """Its interference at the temperature of a case, m; a bonded ring's may be negative."""
+        """The interference at the temperature of a case, m; it may be negative for a bonded
+        bushing.
+        """
         return self.interference + self.outgrown
 
     def __post_init__(self) -> None:
@@ -48,14 +51,14 @@ class Bushing:
 
 @dataclass(frozen=True)
 class Shank:
-    """The outline of a lug in its plane: the head about the bore, and the shank that holds it, m.
+    """The outline of a lug in its plane: the head around the bore, and the shank that holds it.
 
     shape: "round": a head of the lug's outer diameter, with a shank of parallel sides; "tapered":
-    the same head, with sides that leave it as tangents; "square": a plate whose end is straight.
-    width: of the shank where it is held; of the whole plate for "square".
-    length: from the bore's centre to where the shank is held.
-    end: from the bore's centre to the end of the head; a round head is eccentric where it is not
-    half of the outer diameter.
+    the same head, with sides tangent to it; "square": a plate with a straight end.
+    width: of the shank where it is held, m; of the whole plate for "square".
+    length: from the bore's centre to where the shank is held, m.
+    end: from the bore's centre to the end of the head, m; a round head is eccentric where this is
+    not half of the outer diameter.
     angle: of the shank from the x axis of the pin, seen from the bore, rad; None where the
     mechanism gives it.
 
@@ -77,12 +80,12 @@ class Shank:
 
 @dataclass(frozen=True)
 class LugRange:
-    """The ranges of the uncertain properties of a lug, None where the usual ones are tried
+    """The ranges of the uncertain properties of a lug; None where the default range is used
     (fea.support.lugs.changes).
 
-    clearance: m.
-    stiffness: times that of the lug.
-    tilt: N m/rad.
+    clearance: on the diameter, m.
+    stiffness: as a factor on that of the lug.
+    tilt: stiffness, N m/rad.
     interference: of the bushing, m.
 
     Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
@@ -107,19 +110,21 @@ class LugRange:
 
 @dataclass(frozen=True)
 class Lug:
-    """The eye of the link at a connection, as an annulus, m.
+    """The eye of the link at a connection, as an annulus.
 
-    clearance: of the diameters, negative for interference.
-    growth: what of the clearance the temperature of a case has added (fea.support.lugs.thermal), m.
-    edge_radius: of the bore's edges.
-    tilt: N m/rad, stiffness of the link's tilt against the others about any axis across the pin;
-    inf: guided, 0: free.
-    bushing: the pin bears on it, if there is one.
-    shank: None where only the eye is known, of which no stress is computed then.
-    friction: Coulomb's coefficient between pin and bore; contact itself is solved without it.
-    axial: segments of the pin that take the link's force along the axis, towards the pin's start
-    and towards its end; None: fea.support.lugs.axial finds them.
+    outer_diameter: m.
+    clearance: on the diameter, m; negative for interference.
+    edge_radius: of the bore's edges, m.
+    tilt: stiffness of the link's tilt relative to the others, about any axis across the pin,
+    N m/rad; inf: guided, 0: free.
+    bushing: on which the pin bears, if there is one.
     range: of the uncertain properties of the lug.
+    shank: None where only the eye is known; no stress of the lug is computed then.
+    growth: part of the clearance that the temperature of a case has added, m
+    (fea.support.lugs.thermal).
+    friction: Coulomb's coefficient between pin and bore; contact itself is solved without friction.
+    axial: segments of the pin that take the link's axial force, towards the pin's start and towards
+    its end; None: fea.support.lugs.axial finds them.
 
     Raises: ArgumentError for impossible values; fea.support.lugs.fit checks those that depend on
     the pin.
@@ -157,7 +162,7 @@ class Lug:
 
     @property
     def loosest(self) -> float:
-        """The largest clearance that is stated, m."""
+        """The largest stated clearance, m."""
         return self.range.clearance[1] if self.range.clearance else self.clearance
 
     @property
@@ -167,17 +172,18 @@ class Lug:
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The materials of its section, from the inside out."""
+        """The materials of the lug's section, from the inside out."""
         return (self.material,) if self.bushing is None else (self.bushing.material, self.material)
 
     def with_materials(self, change: Callable[[Material], Material]) -> Lug:
-        """The same lug with its materials, and its bushing's, changed."""
+        """The same lug with its material and that of its bushing changed."""
         bushing = self.bushing and replace(self.bushing, material=change(self.bushing.material))
         return replace(self, material=change(self.material), bushing=bushing)
 
     def pressed_bushings(self) -> tuple[Bushing, ...]:
-        """Its bushing as the study has it, and at the ends of the range of its interference; none
-        without one, one without a range.
+        """The bushing with its given interference, and with those at the ends of its range.
+
+        The result is empty without a bushing, and has one item without a range.
         """
         if self.bushing is None:
             return ()
@@ -186,9 +192,9 @@ class Lug:
         return tuple(replace(self.bushing, interference=x) for x in interferences)
 
     def outline(self, radius: float) -> LugOutline:
-        """The outline of a lug that has a shank, about a band of some radius, m.
+        """The outline of a lug with a shank, around a band of a radius, m.
 
-        Raises: ArgumentError where its dimensions contradict each other.
+        Raises: ArgumentError for a lug without a shank, and for contradictory dimensions.
         """
         if self.shank is None:
             raise ArgumentError(f"lug {self.connection} has no shank", "no-shank")
@@ -203,26 +209,27 @@ class Lug:
             raise ArgumentError(f"lug {self.connection}: {error}", error.code) from None
 
     def gap(self, ends: Floats) -> Floats:
-        """The gap on the radius, (R,) m, on the mean over each ring, before anything moves.
+        """The mean radial gap over each ring before loading, (R,) m.
 
-        It is half of the clearance, and the depth of the edges' rounding.
+        It is half of the clearance plus the depth of the edge rounding.
         ends: of the rings, (R + 1,) m along z.
         """
         return 0.5 * self.clearance + np.diff(self._rounded(ends)) / np.diff(ends)
 
     def _rounded(self, z: Floats) -> Floats:
-        """The integral of the depth of rounding of both edges, from the bore's start to z."""
+        """The integral of the depth of rounding of both edges up to z, m^2, but for a constant."""
         first, last = z[0], z[-1]
         return _segment(self.edge_radius, z - first) - _segment(self.edge_radius, last - z)
 
 
 def _segment(radius: float, x: Floats) -> Floats:
-    """The integral, m^2, from 0 to x of the depth r - sqrt(r^2 - (r - t)^2) of a quarter round at t
-    < r from the edge.
+    """The integral over t from 0 to x, m^2, of the depth of a rounded edge.
+
+    At a distance t < r from the face the depth is r - sqrt(r^2 - (r - t)^2).
     """
     if radius == 0.0:
         return np.zeros_like(x)
-    s = 1.0 - np.minimum(x / radius, 1.0)  # of the way that is left
+    s = 1.0 - np.minimum(x / radius, 1.0)  # remaining fraction of the rounding
     total = 1.0 - np.pi / 4.0
     rest = s - 0.5 * (s * np.sqrt(1.0 - s * s) + np.arcsin(s))
     return np.asarray(radius**2 * (total - rest))

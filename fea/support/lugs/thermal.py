@@ -1,10 +1,11 @@
-"""The fit of a pin in its lug, and of a bushing in it, at another temperature.
+"""The fits of a pin in its lug and of a bushing in the lug at another temperature.
 
-Pin, bushing and lug have one temperature, the same throughout. Alone each would only grow: the pin
-by alpha_pin d per kelvin, the bore of a lug by alpha_lug d. A bushing, of outer diameter h, would
-outgrow its hole by (alpha_bushing - alpha_lug) h: so much is added to its interference, and presses
-its bore inwards, as two of Lame's tubes one in the other do (fea.support.lugs.fit). A bonded one is
-pulled outwards as well; a pressed one loses its fit where its interference is used up.
+Pin, bushing and lug have the same, uniform temperature. Each alone would expand freely: the pin by
+alpha_pin d per kelvin, the bore of a lug by alpha_lug d. A bushing of outer diameter h would
+outgrow its hole by (alpha_bushing - alpha_lug) h per kelvin. This is added to its interference and
+presses its bore inwards, as in two Lame tubes inside each other (fea.support.lugs.fit). If it is
+negative, a bonded bushing is pulled outwards, and a pressed bushing becomes loose where its
+interference is used up.
 """
 
 from __future__ import annotations
@@ -18,10 +19,11 @@ from geometry import ArgumentError
 
 
 def at_temperature(lug: Lug, pin: Material, radius: float, rise: float) -> Lug:
-    """The lug, with its clearance and its bushing's interference, at another temperature.
+    """The lug at another temperature, with the clearance and the bushing's interference changed.
 
-    pin: the material of the pin. radius: of its band, m. rise: above the temperature at which the
-    dimensions of the lug hold, K.
+    pin: material of the pin.
+    radius: of the pin's band, m.
+    rise: above the temperature at which the dimensions hold, K.
 
     Raises: ArgumentError for a material without thermal expansion.
     """
@@ -47,8 +49,8 @@ def at_temperature(lug: Lug, pin: Material, radius: float, rise: float) -> Lug:
 
 
 def bore_widening(lug: Lug, radius: float) -> float:
-    """The widening of a bushing's bore per interference in its lug, both of diameters:
-    a negative number.
+    """The change of the bore's diameter per interference on the diameter of a bushing in its lug, a
+    negative number.
     """
     assert lug.bushing is not None
     constants = bushing_press_fit(lug, radius)[0]
@@ -56,10 +58,11 @@ def bore_widening(lug: Lug, radius: float) -> float:
 
 
 def bushing_opening_rise(lug: Lug, rise: float) -> float | None:
-    """The rise of temperature, K, at which a pressed bushing becomes loose with the least of its
-    interferences; None where it holds.
+    """The temperature rise, K, at which a pressed bushing with the least of its interferences
+    becomes loose; None where it is not loose.
 
-    lug: at a temperature, which is `rise` above that of its dimensions.
+    lug: at the temperature of a case.
+    rise: of that temperature above the temperature of the dimensions, K.
     """
     if lug.bushing is None:
         return None

@@ -177,7 +177,9 @@ def _sections(group: LoadGroup, some: list[int]) -> list[FoundSection]:
     assert isinstance(pin, Pin)
     field = SectionField(pin, group.problem.material, group.held[0].clamps, (loads,))
     return [
-        FoundSection(at, ErrorParts(0.0, model=field.held_twice(at) * at.value), group.every[k])
+        FoundSection(
+            at, ErrorParts(0.0, model=field.error_between_clamps(at) * at.value), group.every[k]
+        )
         for k, at in zip(some, field.place_of_each(loads), strict=True)
     ]
 

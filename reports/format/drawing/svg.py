@@ -8,10 +8,12 @@ INK_COLOUR = "#222222"
 MEAN_LETTER_WIDTH = 6.1  # mean width of a letter of the text
 
 
-def line(x1: float, y1: float, x2: float, y2: float, more: str = "", ink: str = INK_COLOUR) -> str:
+def line(
+    x1: float, y1: float, x2: float, y2: float, attributes: str = "", ink: str = INK_COLOUR
+) -> str:
     return (
         f'<line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" y2="{y2:.2f}" stroke="{ink}" '
-        f'stroke-width="0.8" {more}/>'
+        f'stroke-width="0.8" {attributes}/>'
     )
 
 

@@ -1,4 +1,4 @@
-"""Curves over the time of a motion: drives, drops, a joint beside its closed form."""
+"""Curves over time: drives, drops, and a joint's motion compared with its closed form."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ ENERGY_NAMES = {
 
 
 def drop_plots(d: DropRecord, units: Units) -> list[Plot]:
-    """Return the plots over time, and over stroke if there is a strut."""
+    """Return the plots over time, and over stroke if the drop has a strut."""
     forces = {"vertical": d.vertical, "along the strut": d.strut, "drag on the leg": d.leg_drag}
     lengths = {"stroke": d.stroke, "tyre": d.deflection}
     energies = {
@@ -81,7 +81,7 @@ def drop_plots(d: DropRecord, units: Units) -> list[Plot]:
 
 
 def motion_plot(check: MotionCheck, units: Units) -> Plot:
-    """Return a joint's speed and acceleration with their closed form and published points."""
+    """Return a joint's speed and acceleration with their closed form and the published points."""
     speed = f"{units.length}/{units.time}"
     panels = [
         Panel(heading, {"linkage": ours, "closed form": exact}, over=_published(check, column))

@@ -1,4 +1,4 @@
-"""A linkage's positions during a motion, or its static position."""
+"""The positions of a linkage during a motion, or its static position."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ DIAGRAM_WIDTH, MIN_DIAGRAM_HEIGHT, MAX_DIAGRAM_HEIGHT = 560.0, 160.0, 560.0
 DIAGRAM_MARGIN = 0.06  # of the size, around the linkage
 LABEL_LETTER_WIDTH, LABEL_LINE_HEIGHT, LABEL_GAP = 7.0, 13.0, 7.0
 SPRING_HALF_WIDTH = 5.0
-SUPPORT_SIZE = 170.0  # of the triangle of a fixed joint, as Vega counts it
+SUPPORT_SIZE = 170.0  # of the triangle of a fixed joint: Vega's size, square pixels
 SUPPORT_FOOT = np.sqrt(SUPPORT_SIZE) * np.array([[-0.5, 0.43], [0.5, 0.43]])  # its lower side
-PATH_TOLERANCE = 1e-4  # of the linkage's size: a twentieth of a pixel
-POSITION_TOLERANCE = 1e-6  # of the linkage's size: positions nearer than this are drawn once
+PATH_TOLERANCE = 1e-4  # of the linkage's size, a twentieth of a pixel
+POSITION_TOLERANCE = 1e-6  # of the linkage's size; nearer positions are drawn once
 
 
 def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
-    """Return the positions from start (solid) to end (dashed) with the paths of the joints."""
+    """Return the first (solid) and the last (dashed) position, with the paths of the joints."""
     frame = _Frame(motion)
     moving = motion.time is not None
     instants = _instants(motion, frame.size)
@@ -59,7 +59,7 @@ def linkage_plot(motion: LinkageMotion, units: Units) -> Plot:
 
 
 class _Frame:
-    """The extent of the picture, with one scale in both directions."""
+    """The extent of the diagram, with one scale in both directions."""
 
     def __init__(self, motion: LinkageMotion) -> None:
         parts = [motion.joint_position, *motion.slides.values(), *motion.springs.values()]
@@ -87,13 +87,13 @@ class _Frame:
 
 
 def _around(motion: LinkageMotion) -> list[Floats]:
-    """Return the points of pitch circles and lines that must be visible."""
+    """Return points of pitch circles and lines that the diagram must include."""
     box = np.array([[-1.0, -1.0], [1.0, 1.0]])
     return [c.ends[:, :1] + c.radius * box if c.round else c.ends for c in motion.pitch]
 
 
 def _instants(motion: LinkageMotion, size: float) -> list[int]:
-    """Return the first instant and, where it differs, the last."""
+    """Return the first instant and, if its position differs, the last."""
     points = motion.joint_position
     moved = float(np.abs(points[-1] - points[0]).max())
     return [0] if motion.time is None or moved < POSITION_TOLERANCE * size else [0, len(points) - 1]
@@ -116,7 +116,9 @@ def _keys(motion: LinkageMotion, instants: list[int], units: Units) -> list[str]
 
 
 def _links(motion: LinkageMotion, k: int, key: str) -> list[Spec]:
-    """Return the outlines of bodies and lines of sliders at an instant, point by point."""
+    """Return the outlines of bodies, lines of sliders and pitch curves at an instant, point by
+    point.
+    """
     at = dict(zip(motion.joints, motion.joint_position[k], strict=True))
     shapes = [
         [at[j] for j in ((*joints, joints[0]) if len(joints) > 2 else joints)]
@@ -140,7 +142,7 @@ def _springs(motion: LinkageMotion, k: int, key: str, frame: _Frame) -> list[Spe
 
 
 def _pitch(curve: PitchCurve, k: int) -> list[Floats]:
-    """Return the line of a rack, or a gear's circle with a radius that turns with it."""
+    """Return the line of a rack, or the circle of a gear with a radius that turns with the gear."""
     if not curve.round:
         return list(curve.ends[k])
     centre, mark = curve.ends[k]
@@ -162,7 +164,9 @@ def _paths(motion: LinkageMotion, size: float) -> list[Spec]:
 
 
 def _path(points: Floats, tolerance: float) -> Floats:
-    """Return the points (N, 2) of a path that are drawn, of many those that its shape needs."""
+    """Return the points (N, 2) of a path to draw; of many points only those that the
+    shape needs.
+    """
     if len(points) <= MAX_CURVE_POINTS:
         return points
     allowed, free = np.full(points.shape, tolerance), np.zeros(len(points), dtype=bool)
@@ -188,7 +192,7 @@ def _lines(data: list[Spec], style: str, key: list[str] | None) -> list[Spec]:
 
 
 def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
-    """Return rings at joints, with triangles at the fixed ones."""
+    """Return rings at the joints, and triangles at the fixed joints."""
     layers = []
     for still, shape, size in ((True, "triangle-up", SUPPORT_SIZE), (False, "circle", 34)):
         shown = [
@@ -204,12 +208,14 @@ def _joints(motion: LinkageMotion, instants: list[int]) -> list[Spec]:
 
 
 def _names(motion: LinkageMotion, instants: list[int], frame: _Frame) -> list[Spec]:
-    """Return the names of bodies, and of joints at the first position, where they hide least."""
+    """Return the names of joints at the first position and of bodies, placed where they
+    hide least.
+    """
     at = dict(zip(motion.joints, motion.joint_position[0], strict=True))
     bodies = [
         (clipped(body), np.mean([at[j] for j in joints], axis=0))
         for body, joints in zip(motion.bodies, motion.links, strict=True)
-        # EF is named after E and F.
+        # A body EF with the joints E and F needs no name.
         if len(joints) > 1 and sorted(body) != sorted("".join(joints))
     ]
     named = [(clipped(name), point) for name, point in at.items()] + bodies

@@ -15,11 +15,11 @@ from reports.plots.spec import Abscissa, Panel, Plot, Spec, clipped, curves, lev
 from reports.plots.theme import SERIES_COLOURS
 
 NEGLIGIBLE_MOTION_SHARE = 1e-9
-MAX_BODIES_PER_PLOT = len(SERIES_COLOURS)  # bodies in one plot
+MAX_BODIES_PER_PLOT = len(SERIES_COLOURS)
 
 
 def motion_plots(motion: LinkageMotion, units: Units) -> Iterator[Plot]:
-    """Yield all plots against time; none for a static linkage."""
+    """Yield all plots against time; none for a linkage at rest."""
     if motion.time is None:
         return
     time = Abscissa(f"time [{units.time}]", motion.time)
@@ -64,9 +64,9 @@ def _turning(motion: LinkageMotion) -> list[int]:
 
 
 def transmission_plots(posture: Posture, units: Units) -> Iterator[Plot]:
-    """Yield the plot of transmission angles, and in a plane the condition number.
+    """Yield the plot of transmission angles, for a planar linkage with the condition number.
 
-    There is none at rest, and none in space where no link has an angle.
+    There is no plot at rest, and none in space if no link has a transmission angle.
     """
     angles = {n: v for n, v in posture.transmission.items() if np.isfinite(v).any()}
     planar = isinstance(posture, LinkageMotion)

@@ -24,7 +24,7 @@ from reports.plots.spec import (
 
 NEGLIGIBLE_REACTION_SHARE = 1e-9
 LOG_SCALE_RATIO = 100.0
-NO_PIN_NAME = "no-pin"  # connections that bear on no pin of the study
+NO_PIN_NAME = "no-pin"  # for connections that bear on no pin of the study
 
 
 def reaction_plot(
@@ -32,7 +32,7 @@ def reaction_plot(
 ) -> Plot:
     """Return magnitudes and components of the forces of one pin's connections along a motion.
 
-    governs: where on that axis the pin's stress is largest.
+    governs: the abscissa at which the pin's stress is largest.
     """
     members = [c for c, name in enumerate(table.pins) if name == pin]
     names = [_name(table, c) for c in members]
@@ -60,7 +60,7 @@ def reaction_plot(
 
 
 def along(table: ReactionTable, units: Units) -> Abscissa:
-    """Return the abscissa of a motion's plots: drive position, or time if there is none."""
+    """Return the abscissa of a motion's plots: the drive position, or the time if there is none."""
     if table.position is not None:
         unit = table.position_unit or units.length
         return Abscissa(f"drive position [{unit}]", table.position)
@@ -95,7 +95,9 @@ def _peak(peak: PeakReaction, units: Units) -> str:
 def _components_that_act(
     table: ReactionTable, members: list[int], units: Units
 ) -> dict[str, Floats]:
-    """Return the components (T, members) by heading, without those that are zero to round-off."""
+    """Return the components (T, members) by heading, without those that are zero up to
+    round-off.
+    """
     shown = {}
     for letter, all_values, unit in (
         ("F", table.forces, units.force),
@@ -110,7 +112,9 @@ def _components_that_act(
 
 
 def bars(table: ReactionTable, units: Units) -> Plot:
-    """Return one bar per connection with its magnitude, and the published value."""
+    """Return a bar for each connection with the magnitude of its force, and the published
+    values.
+    """
     values = [peak.force for peak in table.largest]
     known = [v for v in (*values, *table.published.values()) if v > 0.0]
     log = bool(known) and max(known) / min(known) > LOG_SCALE_RATIO

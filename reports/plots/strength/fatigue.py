@@ -1,4 +1,6 @@
-"""Plots of fatigue: the stress at a pin's worst point, and the frequency of its amplitudes."""
+"""Plots of fatigue: the stress at a pin's worst point, and the cumulative spectrum of its
+amplitudes.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ from reports.plots.spec import NUMBER_FORMAT, Abscissa, Panel, Plot, clipped, cu
 
 
 def history_plot(history: PointHistory, units: Units) -> Plot:
-    """Return signed and plain von Mises stress at a point over the instants.
+    """Return signed and unsigned von Mises stress at a point over the instants.
 
     The cases follow each other with zero load between them.
     """
@@ -39,7 +41,9 @@ def _course(cases: list[Floats]) -> Floats:
 
 
 def collective_plot(point: PointFatigue, unit: str, units: Units) -> Plot:
-    """Return how often amplitudes at a point are reached per unit, cumulated from the largest."""
+    """Return the number of cycles per unit in which amplitudes at a point are reached, cumulated
+    from the largest amplitude.
+    """
     reached = np.cumsum(point.counts)
     steps = [{"x": float(n), "y": float(a)} for a, n in zip(point.amplitudes, reached, strict=True)]
     title = f"Pin {clipped(point.pin)}, point {point.point}: cumulative spectrum per {unit}"

@@ -1,4 +1,4 @@
-"""Plots of the factor of safety over the ranges of a landing's impulse."""
+"""Plots of the safety factor over the ranges of a landing's impulse."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from reports.plots.spec import Abscissa, Panel, Plot, curves, labels, level
 def landing_plot(
     case: str, members: list[LandingRange], required: float | None, units: Units
 ) -> Plot | None:
-    """Return the factor against the impulse time for the pulse of the case; None without factors.
+    """Return the safety factor against the impulse time for the pulse of the case; None without
+    factors.
 
-    There is a panel per velocity change and a curve per pin; the axes are logarithmic.
+    There is a panel for each velocity change (of more than two, the smallest and the largest) and a
+    curve for each pin; the factors are on logarithmic axes.
     """
     names = labels(m.pin for m in members)
     known = {
@@ -49,7 +51,7 @@ def landing_plot(
 
 
 def _label(name: str, m: LandingRange) -> str:
-    """Return the name of a pin, with its verdict unless it is converged."""
+    """Return the name of a pin, with its verdict unless this is "converged"."""
     return f"pin {name}" if m.verdict == "converged" else f"pin {name}, {m.verdict}"
 
 

@@ -10,7 +10,9 @@ from reports.plots.spec import Abscissa, Panel, Plot, curves, level
 
 
 def limit_plot(pin: PinResult, units: Units) -> Plot | None:
-    """Return the load factor against displacement; None where no solid was loaded past yield."""
+    """Return the load factor against displacement; None where no solid model was loaded
+    past yield.
+    """
     limit = pin.limit_load
     if limit is None or limit.curve is None or limit.upper is None:
         return None

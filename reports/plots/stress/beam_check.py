@@ -1,4 +1,4 @@
-"""Plots of a cantilever against beam theory."""
+"""Plots of a cantilever pin compared with beam theory."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from reports.format.file_names import plot_name
 from reports.format.numbers import engineering, short
 from reports.plots.spec import Abscissa, Panel, Plot, Spec, bands, curves
 
-HEADROOM_FACTOR = 1.25  # over the beam's peak; higher values are cut off
+HEADROOM_FACTOR = 1.25  # upper end over the beam's peak; higher values are cut off
 
 
 def beam_plots(check: BeamCheck, units: Units) -> Iterator[Plot]:
-    """Yield shear and moment diagrams, and the axial stress of beam and solid along the pin."""
+    """Yield the shear and moment diagrams, and the axial stress of beam and solid along the pin."""
     z = Abscissa(f"z from the root [{units.length}]", check.z)
     force = f"{engineering(check.force)} {units.force}"
     title = f"Pin {check.pin}, {check.case}: cantilever under {force}"

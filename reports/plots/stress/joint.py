@@ -1,4 +1,4 @@
-"""Plots of how the lugs load a pin: load per length, with the bending moment under it."""
+"""Plots of the load from the lugs on a pin: load per length, and the bending moment below it."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from reports.plots.spec import (
     rows,
 )
 
-LABEL_HEADROOM_FACTOR = 1.18  # above the largest value, for names and labels
+LABEL_HEADROOM_FACTOR = 1.18  # upper end over the largest value, with room for names
 
 
 def joint_plot(pin: str, case: str, joint: JointResult, units: Units) -> Plot:
-    """Return the plot of one pin in one case at the governing instant; the lugs are shaded."""
+    """Return the plot of one pin in one case at the governing instant, with shaded lugs."""
     force = f"load per length [{units.force}/{units.length}]"
     z = [z for z, _ in joint.bending_moments]
     title = f"Pin {clipped(pin)}, {clipped(case)}: load from the lugs"
@@ -60,7 +60,7 @@ def _moment_heading(units: Units) -> str:
 
 
 def _load(band: BandContact, heading: str, top: float) -> Spec:
-    """Return a load that is constant along each ring; without rings, a curve."""
+    """Return the load per length of a band: constant along each ring, or without rings a curve."""
     load = [q for _, q in band.line_load]
     pairs = zip(band.ends, [*load, load[-1]], strict=True) if band.ends else band.line_load
     return {
@@ -72,10 +72,7 @@ def _load(band: BandContact, heading: str, top: float) -> Spec:
 
 
 def _y(top: float = 0.0) -> Spec:
-    """Return the ordinate.
-
-    top: of the scale, if positive.
-    """
+    """Return the ordinate. top: upper end of the scale, if positive."""
     scale = {"scale": {"domainMax": top}} if top > 0.0 else {}
     return {"field": "y", "type": "quantitative", "title": None, **scale}
 

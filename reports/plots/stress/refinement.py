@@ -1,4 +1,4 @@
-"""Plots of the maximum stress and the strain energy on each mesh, as deviations from the finest."""
+"""Plots of the maximum stress and the strain energy of each mesh, as deviations from the finest."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _deviations(history: Sequence[Refinement]) -> tuple[list[float], list[float 
 def _panel(field: str, heading: str, value: tuple[str, str], names: list[str]) -> Spec:
     """Return a panel of deviations.
 
-    value: a field with its title, shown under the pointer.
+    value: a field and its title, which the pointer shows.
     """
     key = {"field": "row", "type": "nominal", "sort": None, "title": None}
     ticks = {"format": "~s", "labelOverlap": "greedy", "labelFlush": True, "labelSeparation": 8}

@@ -1,4 +1,4 @@
-"""Plots of the von Mises stress along a pin, maximum over the circumference."""
+"""Plots of the von Mises stress along a pin, as the maximum over the circumference."""
 
 from __future__ import annotations
 
@@ -31,10 +31,11 @@ FILL_STYLES = {"band": "band", "held": "governs"}
 def surface_plot(
     surface: Surface, case: SurfaceCase, pin: PinResult, shape: PinShape | None, units: Units
 ) -> Plot:
-    """Return the stress of a pin with a meridian in one case: outer surface and bore along z.
+    """Return the stress of a revolved pin in one case, on the outer surface and in the bore, along
+    z.
 
-    It is at the governing instant, without the excluded zones.
-    shape: for the strip with the bands.
+    The stress is that at the governing instant, without the excluded zones.
+    shape: for the strip with the bands; None leaves the strip out.
     """
     z = surface.points[:, 2]
     lugs = unread_points(case)
@@ -73,7 +74,7 @@ def surface_plot(
 
 
 def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> Spec:
-    """Return one curve, in the order of the meridian."""
+    """Return the curve of one side, in the order of the meridian."""
     heading = {"x": "z", "y": f"von Mises, {name}"}
     key: Spec = {"datum": name, "scale": {"domain": names}}
     return {
@@ -90,7 +91,7 @@ def _side(name: str, part: slice, names: list[str], z: Floats, read: Floats) -> 
 
 
 def outline_sides(z: Floats) -> dict[str, slice]:
-    """Return the points of the outer surface and of the bore, with shoulders, without end faces.
+    """Return the slices of the outer surface and the bore, with shoulders, without end faces.
 
     The meridian runs up the outer surface, then down the bore.
     """
@@ -104,7 +105,9 @@ def outline_sides(z: Floats) -> dict[str, slice]:
 
 
 def unread_points(case: SurfaceCase) -> Mask:
-    """Return the points (P,) whose stress is nowhere read, since lugs press on them or beside."""
+    """Return the points (P,) whose stress is nowhere read, since lugs press on them or next to
+    them.
+    """
     if case.unread is None:
         return np.zeros(len(case.largest), dtype=bool)
     return np.asarray(case.largest <= 0.0)
@@ -116,7 +119,7 @@ def _spans(z: Floats, excluded: Mask) -> list[tuple[float, float]]:
 
 
 def _mark(pin: PinResult, units: Units) -> list[Spec]:
-    """Return the maximum with its error, or the interval of a singular row."""
+    """Return the maximum with its error, or with its interval for a singular row."""
     if pin.location is None or pin.max_von_mises is None:
         return []
     value, error, within = pin.max_von_mises, 0.0, ""
@@ -143,7 +146,7 @@ def _mark(pin: PinResult, units: Units) -> list[Spec]:
 
 
 def _strip(shape: PinShape | None, across: Spec) -> list[Spec]:
-    """Return the strip under the curves: bearing bands, and clamped segments with a frame."""
+    """Return the strip below the curves: bearing bands, and clamped segments as frames."""
     if shape is None:
         return []
     at, shown = 0.0, []

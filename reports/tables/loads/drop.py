@@ -39,7 +39,7 @@ def peak_grid(d: DropRecord, results: Results) -> Grid:
 
 
 def impulse_grid(d: DropRecord, results: Results) -> Grid:
-    """Return the estimate by an impulse next to the drop."""
+    """Return the estimates of the vertical force by impulses, compared with the drop."""
     time, peak = results.units.time, d.peaks["vertical"].value
     columns: list[Column[tuple[str, float, str]]] = [
         read_only("by", lambda row: row[0], numeric=False),

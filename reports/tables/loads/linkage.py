@@ -16,7 +16,7 @@ Names = Callable[[LinkageMotion], Iterable[str]]
 
 
 def _columns(key: str, names: Names) -> list[Column[LinkageMotion]]:
-    """Return the columns of case, time and name, for each of `names` at every instant."""
+    """Return the columns of case, time and name, with a line for each name at every instant."""
     return [
         *fields("case"),
         Column(
@@ -27,14 +27,14 @@ def _columns(key: str, names: Names) -> list[Column[LinkageMotion]]:
 
 
 def _flat(key: str, values: Callable[[LinkageMotion], Floats], dimension: str) -> Column[Any]:
-    """Return a column of values (T, N) of N names, all names of an instant together."""
+    """Return a column of values (T, N) of N names; the names of an instant follow each other."""
     return Column(key, lambda m: values(m).ravel(), dimension)
 
 
 def _of_each(
     key: str, values: Callable[[LinkageMotion], list[Floats]], dimension: str
 ) -> Column[Any]:
-    """Return a column of values (T,) by name, all names of an instant together."""
+    """Return a column of values, N arrays (T,); the names of an instant follow each other."""
     return Column(key, lambda m: np.array(values(m)).T.ravel(), dimension)
 
 
@@ -93,7 +93,7 @@ PATH_COLUMNS = [
 def linkage_tables(results: Results) -> list[Table[LinkageMotion]]:
     """Return the tables of the linkage over all cases.
 
-    They are motion, joints, transmission (also in space), linkage, sliders and, where points are
+    These are motion, joints, transmission (also in space), linkage, sliders and, if points are
     named, paths.
     """
     paths = {"paths": PATH_COLUMNS} if any(m.paths for m in results.motion) else {}

@@ -49,7 +49,7 @@ MOTION_CHECK_COLUMNS: list[Column[MotionCheck]] = [
     *fields("closed_form_acceleration", "acceleration"),
 ]
 
-# Vectors of a body in space: what their columns begin with -> attribute and dimension
+# Vectors of a body in space: beginning of the keys of their columns -> attribute and dimension
 BODY_VECTORS = {
     "": ("centre", "length"),
     "v": ("velocity", "velocity"),
@@ -65,12 +65,16 @@ BODY_VECTORS = {
 
 
 def reactions_table(results: Results) -> Table[ReactionTable]:
-    """Return forces and moments on the pins, world axes: a line per instant and connection."""
+    """Return the forces and moments on the pins in world axes, a line for each instant and
+    connection.
+    """
     return ArrayTable("reactions", REACTION_COLUMNS, results.reactions)
 
 
 def reactions_pin_axes_table(results: Results) -> Table[ReactionTable]:
-    """Return the same in the axes of each pin, which turn with the body that carries it."""
+    """Return the forces and moments in the axes of each pin, which turn with the body that carries
+    it.
+    """
     turned = [
         replace(t, forces=_in_pin_axes(t, t.forces), moments=_in_pin_axes(t, t.moments))
         for t in results.reactions
@@ -92,7 +96,9 @@ def drive_table(results: Results) -> Table[DriveTable]:
     turning = any(table.kind != "slider" for table in results.drive)
 
     def of_kind(key: str, sliding: str, rotary: str) -> Column[DriveTable]:
-        """Return a column whose dimension is another for a rotary drive."""
+        """Return a column whose dimension depends on the kind of drive, if there are
+        rotary drives.
+        """
 
         def by_kind(table: DriveTable) -> str:
             return sliding if table.kind == "slider" else rotary
@@ -125,7 +131,7 @@ def motion_check_table(check: MotionCheck) -> Table[MotionCheck]:
 
 
 def bodies_table(results: Results) -> Table[BodyMotion]:
-    """Return motion and momenta of bodies in space: a line per instant and body."""
+    """Return motion and momenta of bodies in space, a line for each instant and body."""
 
     def component(name: str, k: int) -> Callable[[BodyMotion], Floats]:
         return lambda table: getattr(table, name)[:, k]

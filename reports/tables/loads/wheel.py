@@ -1,4 +1,6 @@
-"""The table of the forces of the ground on wheels: parts of reference loads, by regulation."""
+"""The table of the forces of the ground on wheels, as fractions of reference loads by
+regulation.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,7 @@ WHEEL_NOTE = (
 
 @dataclass(frozen=True)
 class WheelRow:
-    """A force on a wheel, in a case by a clause."""
+    """A force on a wheel in a case that a clause demands."""
 
     of: ReactionTable
     load: WheelLoad
@@ -51,7 +53,7 @@ COLUMNS: list[Column[WheelRow]] = [
 
 
 def wheel_table(results: Results) -> Table[WheelRow]:
-    """Return a line for each force of the ground on a wheel in a case by a regulation."""
+    """Return a line for each force of the ground on a wheel in the cases of a regulation."""
     rows = [
         WheelRow(table, load, results.units)
         for table in results.reactions

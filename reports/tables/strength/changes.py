@@ -1,4 +1,4 @@
-"""Changes that make a pin reach its factor, each sufficient alone, for pins below their factor."""
+"""Changes by which a pin reaches its factor, each sufficient alone, for pins below their factor."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ COLUMNS: tuple[Column[Remedy], ...] = (
 
 
 def changes_table(results: Results) -> Table[Remedy]:
-    """Return a row for each pin, the worst first."""
+    """Return the table with a row for each pin, the worst first."""
     return Table("changes", COLUMNS, results.changes)
 
 
 def change_notes(results: Results) -> list[str]:
-    """Return the notes on the rows, a sentence or two each."""
+    """Return the notes on the changes, each of a sentence or two."""
     left_out = unsized(results.changes)
     sized = (change for change in results.changes if change not in left_out)
     notes = notes_of_pins((change.diameter_note, change.pin) for change in sized)
@@ -62,8 +62,8 @@ def change_notes(results: Results) -> list[str]:
 
 
 def unsized_notes(results: Results) -> list[str]:
-    """Return a sentence on the pins that no diameter brings to their factor, and why the worst of
-    them; nothing without any.
+    """Return a sentence on the pins that reach their factor with no diameter, with the reason for
+    the worst of them; nothing without such pins.
     """
     if not (left_out := unsized(results.changes)):
         return []
@@ -75,13 +75,16 @@ def unsized_notes(results: Results) -> list[str]:
 
 
 def notes_of_pins(notes: Iterable[tuple[str, str]]) -> list[str]:
-    """Return the notes, each with the pins that have it. notes: each with a pin; some empty."""
+    """Return each different note with the pins to which it applies.
+
+    notes: pairs of a note, which may be empty, and a pin.
+    """
     pins = grouped(pair for pair in notes if pair[0])
     return [f"{'Pins' if of[1:] else 'Pin'} {', '.join(of)}: {note}." for note, of in pins.items()]
 
 
 def _by_contact(results: Results, change: Remedy) -> bool:
-    """Return whether the stress beneath contact decides what is needed."""
+    """Return whether the stress beneath contact determines the required strength."""
     row = next(p for p in results.pins if (p.pin, p.case) == (change.pin, change.case))
     contact = row.places.contact if row.places else None
     needed = ROUND_OFF_FACTOR * change.yield_strength / change.required
@@ -96,7 +99,9 @@ def _remedies(results: Results) -> list[str]:
 
 
 def singularity_remedies(zones: Iterable[SingularZone]) -> list[str]:
-    """Return the remedy of each kind of singularity; at the edges of loads, by what acts there."""
+    """Return the remedy of each kind of singularity; for the edges of loads the advice of each
+    load.
+    """
     zones = list(zones)
     remedies = [
         text

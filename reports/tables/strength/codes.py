@@ -1,4 +1,4 @@
-"""The codes that a study selects side by side: the least margin by each at every lug."""
+"""The codes that a study selects, side by side: the least margin by each code at every lug."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CODES_TITLE = "Least margin of each code (without the checks that all of them ha
 class CodesRow:
     """A place of a pin with the governing check of each code, over all cases.
 
-    margins: by code; a check that several codes have counts for each.
+    margins: by code; a check that several codes share counts for each of them.
     """
 
     pin: str
@@ -26,10 +26,11 @@ class CodesRow:
 
 
 def codes_table(results: Results) -> Table[CodesRow]:
-    """Return a row for each place of a pin at which a code has a check that others do not have; no
-    rows for one code.
+    """Return a row for each place of a pin at which some but not all codes have a check.
+
+    The table has no rows if the study selects a single code.
     """
-    made = list(_made(results))
+    made = list(_checks_at_places(results))
     codes = list(dict.fromkeys(code for _, m in made for code in m.code.split(", ")))
     rows: dict[tuple[str, str], dict[str, Margin]] = {}
     for pin, m in made:
@@ -45,10 +46,10 @@ def codes_table(results: Results) -> Table[CodesRow]:
     return Table("codes", columns, shown if len(codes) > 1 else [])
 
 
-def _made(results: Results) -> Iterator[tuple[str, Margin]]:
-    """Yield the checks of all rows that were made at a named place by a code, with their pins.
+def _checks_at_places(results: Results) -> Iterator[tuple[str, Margin]]:
+    """Yield the pin and the margin of each check of a code at a named place.
 
-    A check without a demand has no margin, and no place.
+    Checks without a demand are left out.
     """
     for row in results.pins:
         for m in row.margins:

@@ -1,4 +1,6 @@
-"""The envelope of all cases: a row per pin, case and connection, and the matrix of the page."""
+"""The envelope of all cases: a row for each pin, case and connection, and the matrix of
+the page.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +16,10 @@ from reports.data.row import Units
 from reports.format.numbers import DASH, beside_limit
 from reports.tables.column import Column, Table, fields, unit_columns
 
-# Of more cases the terminal has the matrix of the worst, and on the page those that govern no pin
-# have a line each instead of cells.
+# With more cases, the terminal shows the matrix of the worst cases, and on the page each case that
+# governs no pin has a line instead of cells.
 MAX_CASES_IN_SENTENCES = 4
-MAX_SHOWN_CASES, MAX_SHOWN_PINS = 4, 10  # of the terminal, unless more cases govern its pins
+MAX_SHOWN_CASES, MAX_SHOWN_PINS = 4, 10  # on the terminal; more cases only if they govern pins
 FULL_COLOUR_UTILISATION = 1.0  # utilisation at which a cell has its full colour
 ENVELOPE_NOTE = (
     "Utilisation of each pin in each case: required over actual factor of safety (1 where none is "
@@ -28,7 +30,7 @@ ENVELOPE_NOTE = (
 
 @dataclass(frozen=True)
 class EnvelopeRow:
-    """A pin in a case, with the largest load on one of its connections, if there are any."""
+    """A pin in a case, with the largest load on one of its connections, if it has any."""
 
     cell: EnvelopeCell
     load: PeakReaction | None
@@ -58,9 +60,9 @@ def envelope_table(results: Results) -> Table[EnvelopeRow]:
 
 @dataclass(frozen=True)
 class CaseRow:
-    """A case, or several, with the cells of its pins by name.
+    """A case, or several cases, with the cells by the name of the pin.
 
-    paragraph: of the rule that demands the case.
+    paragraph: the paragraph of the regulation that demands the case.
     """
 
     case: str
@@ -69,7 +71,7 @@ class CaseRow:
 
     @property
     def governs(self) -> bool:
-        """Whether the case is the worst of a pin."""
+        """Whether the case is the worst case of any pin."""
         return any(cell.governs for cell in self.cells.values())
 
     @property
@@ -79,7 +81,7 @@ class CaseRow:
 
     @property
     def line(self) -> str:
-        """The largest utilisation in words, of a case that governs no pin."""
+        """The largest utilisation in words, for a case that governs no pin."""
         most = max(self.cells.values(), key=lambda cell: cell.used or 0.0)
         return f"governs no pin; largest {cell_text(most)}, pin {most.result.pin}"
 
@@ -88,7 +90,8 @@ class CaseRow:
 class Matrix:
     """A matrix of cases and pins.
 
-    rows: of cases; of many those that govern a pin, the worst first. quiet: the others.
+    rows: the cases; if there are many, those that govern a pin, the worst first.
+    quiet: the other cases.
     note: on what the report leaves out.
     """
 
@@ -117,11 +120,10 @@ def matrix(results: Results) -> Matrix | None:
 
 
 def worst_cases(results: Results, pins: Sequence[str]) -> Table[CaseRow] | None:
-    """Return the matrix of the worst cases, the others in one row; None for few cases.
+    """Return the matrix of the worst cases, with the other cases in one row; None for few cases.
 
     Cases that govern a pin come first, then those with the largest utilisation.
-
-    pins: that have a column, in this order; of many the first.
+    pins: the pins that have a column, in this order; only the first MAX_SHOWN_PINS are shown.
     """
     every = matrix(results)
     if every is None or (not every.quiet and len(every.rows) <= MAX_CASES_IN_SENTENCES):
@@ -154,7 +156,7 @@ def _of_pin(pin: str) -> Column[CaseRow]:
 
 
 def heat(cell: EnvelopeCell) -> float:
-    """Return the share of a cell's full colour, in per cent."""
+    """Return the colour of a cell as a percentage of the full colour."""
     return (
         0.0
         if cell.used is None

@@ -30,7 +30,7 @@ OPEN_WORDS = {
 
 @dataclass(frozen=True)
 class FatigueRow:
-    """A point of a pin, None where the fatigue of the pin is not known."""
+    """A point of a pin; None where the fatigue of the pin is not known."""
 
     pin: str
     point: PointFatigue | None
@@ -83,12 +83,12 @@ def _rows(fatigue: Fatigue | None) -> list[FatigueRow]:
 
 
 def worst_points(fatigue: Fatigue) -> list[PointFatigue]:
-    """Return the point of each pin with the most damage, the worst pin first."""
+    """Return the most damaged point of each pin, the worst pin first."""
     return list({p.pin: p for p in reversed(fatigue.points)}.values())[::-1]
 
 
 def shown_fatigue(results: Results) -> Table[PointFatigue] | None:
-    """Return each pin's worst point; None where nothing is assessed."""
+    """Return the worst point of each pin; None where nothing was assessed."""
     fatigue = results.fatigue
     if fatigue is None or not fatigue.points:
         return None
@@ -156,8 +156,8 @@ def _or_infinite(value: float) -> str:
 def fatigue_sentence(fatigue: Fatigue) -> str:
     """Return a sentence on the worst point.
 
-    It names the pins that are not decided, and those assessed by another method than the requested
-    one.
+    Further sentences name the pins that are not decided, and the pins that were assessed by another
+    method than the requested one.
     """
     known = [p for p in fatigue.points if p.pin not in fatigue.not_decided]
     sentences = [_worst(known[0], fatigue)] if known else []
@@ -188,8 +188,8 @@ def _worst(worst: PointFatigue, fatigue: Fatigue) -> str:
 
 
 def _not_everywhere(fatigue: Fatigue) -> Iterator[str]:
-    """Yield a sentence on each point whose life is reached as described, but not over what is open
-    of its stress.
+    """Yield a sentence on each point that reaches the design life as described, but not over all
+    that is open in its stress.
     """
     for p in fatigue.points if fatigue.life else ():
         assert fatigue.life
@@ -213,7 +213,7 @@ def _so_far(pin: str, fatigue: Fatigue) -> str:
     return f"; the design life uses at least {_per_cent(worst.utilisation)}"
 
 
-# The keys of results.json.
+# Keys of results.json.
 FATIGUE = fields(
     "unit occurrences method failure_probability=probability design_life=life left_out not_decided"
 )

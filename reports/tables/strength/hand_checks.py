@@ -40,8 +40,8 @@ def _check(
 ) -> Column[CheckRow]:
     """Return a column of an attribute of the check.
 
-    name: "attribute" or "key=attribute". model: the text for people in the row of the model's
-    result.
+    name: "attribute" or "key=attribute".
+    model: returns the text for people in the row of the model's result.
     """
     key, _, attribute = name.rpartition("=")
 
@@ -68,7 +68,7 @@ COLUMNS: list[Column[CheckRow]] = [
     _check("factor=safety_factor", "", "factor", lambda row: _factor(row.pin)),
     _check("formula", "", "stress from", lambda row: "elasticity", numeric=False),
     _check("source=clause", "", "source", lambda row: DASH, numeric=False),
-    # The model's result for the same pin, with its verdict.
+    # These columns repeat the model's result for the pin, with its verdict.
     *fields("pin.model"),
     *fields("pin.max_von_mises", "stress"),
     *fields("pin.safety_factor pin.verdict"),

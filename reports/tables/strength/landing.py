@@ -1,4 +1,4 @@
-"""Factors of safety over the ranges of a landing's impulse, as tables."""
+"""Safety factors over the ranges of a landing's impulse, as tables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LANDING_NOTE = (
 
 @dataclass(frozen=True)
 class LandingPoint:
-    """Point number k of the range of a pin in a case."""
+    """Point k of the landing range of a pin in a case."""
 
     of: LandingRange
     k: int
@@ -31,19 +31,19 @@ class LandingPoint:
 
     @property
     def factor(self) -> float | None:
-        """The factor of safety."""
+        """The safety factor."""
         factors = self.of.safety_factor
         return None if factors is None else float(factors[self.k])
 
     @property
     def meets(self) -> bool | None:
-        """Return whether the required factor is met with the error."""
+        """Whether the required factor is met with the error; None where this is not decided."""
         if self.factor is None or self.required is None:
             return None
         return _meets(self.of, self.factor / self.required)
 
     def end(self, k: int) -> float | None:
-        """Return an end of the interval of a singular row's factor."""
+        """Return the lower (k = 0) or upper (k = 1) end of the factor of a singular row."""
         if self.factor is None or self.of.spread is None:
             return None
         return self.of.spread[k] * self.factor
@@ -93,7 +93,7 @@ def write_landing(results: Results, directory: Path) -> None:
 def landing_tables(results: Results) -> str:
     """Return Markdown tables by case, velocity change and pulse.
 
-    They have a row per pin and a column per impulse time.
+    Each has a row for each pin and a column for each impulse time.
     """
     parts = []
     for title, grid in landing_blocks(results):
@@ -105,7 +105,7 @@ def landing_tables(results: Results) -> str:
 def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
     """Return titles and tables by case, velocity change and pulse.
 
-    They have a row per pin and a column per impulse time.
+    Each table has a row for each pin and a column for each impulse time.
     """
     units, blocks = results.units, []
     required = {(row.pin, row.case): limit(row) for row in results.pins}
@@ -117,7 +117,10 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
             here = [i for i, point in enumerate(points) if point == (speed, pulse)]
             columns = [
                 *texts("pin verdict"),
-                *(_at(i, f"{short(first.impulse_time[i])} {units.time}", required) for i in here),
+                *(
+                    _factor_column(i, f"{short(first.impulse_time[i])} {units.time}", required)
+                    for i in here
+                ),
             ]
             title = f"{case}, velocity change {short(speed)} {units.length}/{units.time}"
             title += f", {pulse} pulse" if len(set(first.pulses)) > 1 else ""
@@ -125,10 +128,12 @@ def landing_blocks(results: Results) -> list[tuple[str, Grid]]:
     return blocks
 
 
-def _at(i: int, heading: str, required: Mapping[tuple[str, str], float]) -> Column[LandingRange]:
-    """Return a column of the factors of safety at a point; for a singular row their interval.
+def _factor_column(
+    i: int, heading: str, required: Mapping[tuple[str, str], float]
+) -> Column[LandingRange]:
+    """Return a column of the safety factors at point i; for a singular row their interval.
 
-    required: the factor of each pin and case.
+    required: the required factor by pin and case.
     """
 
     def text(r: LandingRange) -> str:
@@ -141,9 +146,10 @@ def _at(i: int, heading: str, required: Mapping[tuple[str, str], float]) -> Colu
 
 
 def _meets(r: LandingRange, part: float) -> bool | None:
-    """Return whether a factor, here divided by the required one, is met with its error.
+    """Return whether a factor is met with its error; None where this is not decided.
 
-    A singular row can only fail, with its whole interval.
+    part: the factor over the required one. A singular row can only fail, if its whole interval
+    does.
     """
     if r.verdict == "singular":
         return None if (r.spread or (1.0, 1.0))[1] * part >= 1.0 else False

@@ -1,4 +1,4 @@
-"""The ladder of what lets go first, of every pin in its governing case."""
+"""The steps at which parts of every pin let go, in its governing case."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ LOAD_FACTOR_NOTE = (
     "out up to 1 % higher for the pin, 2 % at the free side of its lugs' bores, 8 % where the pin "
     "presses on them, and 34 % at their edges."
 )
-MAX_STEPS = 12  # that are shown at once
+MAX_STEPS = 12  # shown at once
 
 
 @dataclass(frozen=True)
 class StepRow:
-    """A step of a pin's row."""
+    """A step, with the row of its pin."""
 
     pin: PinResult
     of: LettingGo
@@ -72,7 +72,7 @@ COLUMNS: list[Column[StepRow]] = [
 
 
 def lets_go_table(results: Results) -> Table[StepRow]:
-    """Return the steps of all pins, one below the other, for files."""
+    """Return the steps of all pins for files."""
     return Table("lets_go", COLUMNS, [row for pin in lets_go(results) for row in _rows(pin)])
 
 
@@ -86,13 +86,15 @@ def _rows(pin: PinSteps) -> list[StepRow]:
 
 
 def notes(pin: PinSteps) -> list[str]:
-    """Return how to read the ladder of a pin, and what has no load factor."""
+    """Return notes on how to read the steps of a pin, and on the steps that have no load factor."""
     about = [LOAD_FACTOR_NOTE] if any(not step.in_proportion for step in pin.known) else []
     return [*not_computed_words(pin.unknown), LETS_GO_NOTE, *about]
 
 
 def first_sentence(pin: PinSteps) -> str:
-    """Return a sentence on what lets go first, and on the first that is more than local yield."""
+    """Return a sentence on the first step, and on the first step that is more than local
+    yielding.
+    """
     if not pin.known:
         return ""
     first = pin.known[0]
@@ -109,7 +111,7 @@ def _words(step: LettingGo) -> str:
 
 
 def not_computed_words(steps: Sequence[LettingGo]) -> list[str]:
-    """Return a line for each thing that is missing, with what has no load factor without it."""
+    """Return a line for each missing datum, with the steps that have no load factor without it."""
     by_need: dict[str, dict[str, None]] = {}
     for step in steps:
         named = f"{step.what} ({step.at})" if step.at else step.what

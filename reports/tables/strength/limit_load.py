@@ -1,4 +1,4 @@
-"""Limit loads: the fraction of its loads at which a pin collapses, and its permanent set."""
+"""Limit loads: the factor on the loads at which a pin collapses, and the permanent set."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
     read_only("after × loads", lambda row: engineering(row[1].permanent_at, 3), rank=2),
 ]
 
-LIMIT_LOAD = fields(  # the keys of results.json
+LIMIT_LOAD = fields(  # keys of results.json
     "lower upper method time carries permanent_set permanent_set_factor=permanent_at hardening "
     "seconds meshes note"
 )
@@ -49,9 +49,9 @@ def limit_rows(results: Results) -> list[tuple[PinResult, LimitLoad]]:
 
 
 def limit_word(row: PinResult, limit: LimitLoad) -> str:
-    """Return whether the pin collapses under its loads, in a word or two.
+    """Return whether the pin collapses under its loads, in a few words.
 
-    A limit load that the study requires is also found of a pin that does not yield.
+    A limit load that the study requires is computed even for a pin that does not yield.
     """
     if limit.stopped:
         return "not computed: --limit-load computes it"
@@ -66,7 +66,7 @@ def limit_word(row: PinResult, limit: LimitLoad) -> str:
 
 
 def limits_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
-    """Return one row per limit load, for people."""
+    """Return the table for people with a row for each limit load."""
     return Table("limits", LIMIT_COLUMNS, limit_rows(results))
 
 

@@ -19,7 +19,7 @@ from reports.format.work_words import passing_text, work_text
 from reports.tables.column import Column, Table, fields, in_order, read_only, texts
 
 MARGIN_COLUMN_ORDER = "pin case method margin utilisation level at time demand allowable clause"
-STRENGTH_SUFFIX = "_strength"  # of keys of materials
+STRENGTH_SUFFIX = "_strength"  # end of the keys of strengths of materials
 MARGINS_NOTE = (
     "Margin of safety = allowable / (factor × demand) − 1, of the check that governs each pin in "
     "each case beside the von Mises stress against yield, which the safety factors above judge. "
@@ -133,7 +133,7 @@ def governing_table(results: Results) -> Table[MarginRow]:
 
 
 def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
-    """Return all checks that were made of a row, the worst first, comparisons last."""
+    """Return all checks that were made for a row, the worst first, those for comparison last."""
     margins = [margin for margin in pin.worst if margin.used >= 0.0]
     margins.sort(key=lambda margin: (not margin.governs, -margin.used))
     rows = (PinMargin(pin.pin, pin.case, margin) for margin in margins)
@@ -141,7 +141,7 @@ def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
 
 
 def not_made_words(results: Results) -> list[str]:
-    """Return a line for each datum that checks need and the study lacks, with these checks."""
+    """Return a line for each datum that the study lacks, with the checks that need it."""
     pins = {p.pin for p in results.pins}
     lines = []
     for needs, of in skipped(results).items():
@@ -155,12 +155,12 @@ def not_made_words(results: Results) -> list[str]:
 
 
 def not_made_briefly(results: Results) -> str:
-    """Return the missing data as clauses without the checks; empty if all were made.
+    """Return the missing data as clauses, without the checks; empty if all checks were made.
 
-    Materials are named with what they lack, lugs are counted.
+    Materials are named with the data that they lack; lugs are counted.
     """
     materials: dict[str, dict[str, None]] = {}
-    lugs: dict[str, dict[str, str]] = {}  # the name of each by its key, by what they lack
+    lugs: dict[str, dict[str, str]] = {}  # names by key of the lug, by missing datum
     others: dict[str, None] = {}
     for needs in skipped(results):
         keys = keys_in(needs)
@@ -183,7 +183,7 @@ def not_made_briefly(results: Results) -> str:
 
 
 def _joined(keys: Collection[str]) -> str:
-    """Return keys one after the other, several strengths with that word once."""
+    """Return the keys as a list; the word "strength" appears once for several strengths."""
     strengths = [key.removesuffix(STRENGTH_SUFFIX) for key in keys if key.endswith(STRENGTH_SUFFIX)]
     if len(strengths) < 2:
         return ", ".join(keys)

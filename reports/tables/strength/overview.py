@@ -1,4 +1,6 @@
-"""The overview as a table: a row for each pin with its factor, spread and estimated diameter."""
+"""The overview as a table: a row for each pin with its factor, open range and estimated
+diameter.
+"""
 
 from __future__ import annotations
 
@@ -20,22 +22,22 @@ from reports.tables.column import Column, Table
 from reports.tables.strength import safety_factors
 from reports.tables.strength.safety_factors import FACTOR_COLUMN_ORDER, FactorRow
 
-MAX_DECADES = 4.0  # of the axis; what lies beyond is at its end
-AXIS_MARGIN = 1.3  # ratio, beyond the smallest and the largest factor
-MAX_RANK = 10  # of columns that a narrow terminal drops first
+MAX_DECADES = 4.0  # of the axis; factors beyond it are drawn at its end
+AXIS_MARGIN = 1.3  # ratio by which the axis exceeds the smallest and the largest factor
+MAX_RANK = 10  # a narrow terminal leaves out columns of this rank first
 SPREAD_DIGITS = 2
 MAX_DIGITS = 6  # of a diameter
 BAR_WIDTH = 20  # characters
-OVER_OPEN_MARK = "‡"  # of a diameter that suffices over all that is open
+OVER_OPEN_MARK = "‡"  # marks a diameter that suffices over all that is open
 SPREAD_MARK, FACTOR_MARK, REQUIRED_MARK = "-", "#", "|"
 
 
 @dataclass(frozen=True)
 class FactorAxis:
-    """A logarithmic axis of factors of safety.
+    """A logarithmic axis of safety factors.
 
-    low, high: its ends. required: the factor that all pins need, or 1, at which
-    they yield; None where it differs.
+    low, high: its ends.
+    required: the factor that all pins need, or 1, at which they yield; None where pins differ.
     """
 
     low: float
@@ -43,7 +45,7 @@ class FactorAxis:
     required: float | None
 
     def at(self, factor: float) -> float:
-        """Return the place of a factor, 0 to 1."""
+        """Return the position of a factor on the axis, 0 to 1."""
         if factor <= self.low:
             return 0.0
         if factor >= self.high:
@@ -58,7 +60,7 @@ class FactorAxis:
 
 
 def factor_axis(lines: Sequence[PinLine]) -> FactorAxis | None:
-    """Return the axis on which all pins have their place; None without any factor."""
+    """Return an axis that covers the factors of all pins; None without any factor."""
     needed = {limit(line.row) for line in lines}
     ends = [end for line in lines for end in (*(line.error or ()), *(line.spread or ()))]
     finite = [end for end in ends if 0.0 < end < math.inf]
@@ -71,7 +73,9 @@ def factor_axis(lines: Sequence[PinLine]) -> FactorAxis | None:
 
 
 def bar(line: PinLine, axis: FactorAxis) -> str:
-    """Return the bar of a pin in characters: its spread, factor with error, and the requirement."""
+    """Return the bar of a pin in characters: its open range, its factor with error, and the
+    required one.
+    """
     cells = [" "] * BAR_WIDTH
 
     def draw(ends: tuple[float, float], mark: str) -> None:
@@ -88,7 +92,7 @@ def bar(line: PinLine, axis: FactorAxis) -> str:
 
 
 def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]:
-    """Return a row for each pin, for people."""
+    """Return the table for people with a row for each pin."""
     shapes = {shape.pin: shape for shape in results.shapes}
     axis = factor_axis(lines)
     cases = {line.case for line in lines}
@@ -115,7 +119,9 @@ def overview_table(results: Results, lines: Sequence[PinLine]) -> Table[PinLine]
 
 
 def _added(results: Results) -> list[Column[PinLine]]:
-    """Return the columns of the safety factors that are not among the usual ones, of each row."""
+    """Return the columns of safety_factors.csv that have a heading and are not among the usual
+    ones.
+    """
 
     def of_line(column: Column[FactorRow]) -> Column[PinLine]:
         text, unit = column.text, column.dimension
@@ -132,13 +138,15 @@ def _added(results: Results) -> list[Column[PinLine]]:
 
 
 def outcome_words(line: PinLine) -> str:
-    """Return the outcome of a pin, with the reason where it is open: "not decided: singular"."""
+    """Return the outcome of a pin, with the reason if it is not decided: "not decided:
+    singular".
+    """
     by_row = line.check.row is not None and line.outcome != DEPENDS
     return result_words(line.row) if by_row else line.outcome
 
 
 def spread_words(line: PinLine) -> str:
-    """Return the ends of the factor over all that is open; a dash where nothing is."""
+    """Return the ends of the factor over all that is open; a dash where nothing is open."""
     if line.spread is None:
         return DASH
     low, high = (factor_text(end, limit(line.row), SPREAD_DIGITS) for end in line.spread)
@@ -146,8 +154,9 @@ def spread_words(line: PinLine) -> str:
 
 
 def diameter_words(line: PinLine) -> str:
-    """Return the diameter, and the estimated one of a pin that fails: "2 → 3.40", "2"; a dagger
-    where its lug is too small, a dash without one.
+    """Return the given diameter, and for a pin that fails the estimated one: "2 → 3.40", "2".
+
+    A dagger marks a lug that is too small; a dash replaces a missing diameter.
     """
     d = line.diameter
     if d is None:
@@ -157,8 +166,8 @@ def diameter_words(line: PinLine) -> str:
 
 
 def either_diameter_words(line: PinLine) -> str:
-    """Return `diameter_words`, and of a pin that depends on what is open the diameter with which it
-    no longer does, which a double dagger marks.
+    """Return `diameter_words`, and for a pin that depends on open values the diameter at which it
+    no longer does, marked by a double dagger.
     """
     d = line.diameter
     if d is None or d.needed or d.whatever is None:
@@ -167,14 +176,14 @@ def either_diameter_words(line: PinLine) -> str:
 
 
 def whatever_words(line: PinLine) -> str:
-    """Return the estimated diameter over all that is open; a dash where it stays as it is."""
+    """Return the estimated diameter over all that is open; a dash where the given one suffices."""
     d = line.diameter
     return DASH if d is None or d.whatever is None else _diameter(d, d.whatever)
 
 
 def _diameter(d: Diameter, diameter: float) -> str:
     mark = " †" if d.too_large(diameter) else ""
-    # As many digits as it takes to be larger than the given one: not "20 → 20.0".
+    # Enough digits to show that it is larger than the given diameter: not "20 → 20.0".
     digits = range(END_DIGITS, MAX_DIGITS + 1)
     enough = (n for n in digits if float(f"{diameter:.{n - 1}e}") > d.given)
     return f"{engineering(diameter, next(enough, MAX_DIGITS))}{mark}"
@@ -186,9 +195,10 @@ def error_words(line: PinLine) -> str:
 
 
 def check_words(line: PinLine) -> str:
-    """Return the worst check where it is another than the maximum against yield and has a load,
-    with its factor and the required one: "lug L, bore: 1.85 of 1.5", "lug L, bushing: 1.2 of 1.5".
-    One over all cases is named in any case, since the factor beside it is not its own.
+    """Return the worst check, with its factor and the required one: "lug L, bore: 1.85 of 1.5".
+
+    The text is a dash if this check is the maximum against yield, or has no load. A check over all
+    cases is named even without a load, since the factor shown next to it is not its own.
     """
     check = line.check
     if check.check == YIELD_METHOD or (check.case and check.used == 0.0):
@@ -203,7 +213,7 @@ def check_words(line: PinLine) -> str:
 
 
 def _heading(axis: FactorAxis | None) -> str:
-    """Return the axis in characters: its powers of ten at their places."""
+    """Return the axis in characters: powers of ten at their positions."""
     if axis is None:
         return ""
     cells = [" "] * (BAR_WIDTH + 4)

@@ -1,4 +1,4 @@
-"""Requirements with what was reached, as rows."""
+"""Requirements with what was reached, as a table."""
 
 from __future__ import annotations
 

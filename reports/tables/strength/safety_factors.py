@@ -31,7 +31,7 @@ from reports.tables.column import Column, Table, fields, grid_of, in_order, unit
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
 
-FACTOR_COLUMN_ORDER = (  # for people; columns that are not named here come last
+FACTOR_COLUMN_ORDER = (  # for people; columns not named here come last
     "pin case outcome safety_factor utilisation max_von_mises error_estimate governs sharing_high "
     "joint_high beneath time verdict model"
 )
@@ -81,7 +81,7 @@ def _error(part: str) -> Column[FactorRow]:
     return Column(f"error_{part}", lambda row: row.pin.error_parts.get(part), "stress")
 
 
-# Columns of later versions are at the end, so that those of earlier ones keep their positions.
+# New columns are appended at the end, so that the existing ones keep their positions.
 COLUMNS: tuple[Column[FactorRow], ...] = (
     Column("pin", lambda row: row.pin.pin, heading="pin", numeric=False, in_json=True),
     Column("case", lambda row: row.pin.case, heading="case", numeric=False, in_json=True),
@@ -140,7 +140,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
 
 
 def safety_factors_table(results: Results) -> Table[FactorRow]:
-    """Return a row per pin and case, with all digits."""
+    """Return the table with a row for each pin and case, with all digits."""
     return Table("safety_factors", COLUMNS, [FactorRow(pin, results) for pin in results.pins])
 
 
@@ -165,7 +165,7 @@ def _required(results: Results) -> str:
 
 
 def write_safety_factors(results: Results, directory: Path) -> None:
-    """Write safety_factors.md, four digits and the notes."""
+    """Write safety_factors.md: the rows with four digits, and the notes."""
     text = _markdown(results)
     (directory / "safety_factors.md").write_text(text, encoding="utf-8")
 
@@ -192,7 +192,7 @@ def _markdown(everything: Results) -> str:
 
 
 def reading(table: Table[FactorRow]) -> list[str]:
-    """Return the explanation of the table, a paragraph each."""
+    """Return the explanation of the table, one paragraph for each entry."""
     names = table.keys
     return [
         RESULT_ROWS_NOTE,

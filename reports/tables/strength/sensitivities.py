@@ -13,15 +13,15 @@ from reports.format.units import unit_name
 from reports.tables.column import Column, Table, fields, in_order, json_of, read_only, texts
 from reports.tables.strength.changes import notes_of_pins
 
-PARAMETER_KEYS = (  # of results.json
+PARAMETER_KEYS = (  # keys of results.json
     "key unit value stress_per_unit factor_per_unit step factor_with_step"
 )
 PIN_SENSITIVITIES = fields(
     "pin case max_von_mises=maximum safety_factor=factor tied_places tied_times changing note"
 )
-MAX_SHOWN_ROWS = 8  # rows of a pin that are shown
+MAX_SHOWN_ROWS = 8  # of a pin
 MAX_BRIEF_ROWS = 3
-MIN_SHOWN_EFFECT = 1e-3  # relative effect of what is shown
+MIN_SHOWN_EFFECT = 1e-3  # least relative change of stress that is shown
 SENSITIVITIES_NOTE = (
     "How a small increment of one dimension changes the factor of safety at unchanged loads: the "
     "derivative of the reported maximum times the increment. The largest effects of each pin are "
@@ -56,7 +56,9 @@ class SensitivityRow:
 
     @property
     def one_sided(self) -> bool:
-        """Whether something else may govern after a small increase of a parameter."""
+        """Whether another place, time or contact state may govern after a small increase of a
+        parameter.
+        """
         return bool(self.of.tied_places or self.of.tied_times or self.of.changing)
 
 
@@ -129,7 +131,7 @@ def _change(per: float | None, step: float) -> str:
 
 
 def sensitivity_notes(results: Results) -> list[str]:
-    """Return the notes on the rows, a sentence or two each."""
+    """Return the notes on the sensitivities, each of a sentence or two."""
     units, notes = results.units, []
     for effects in results.sensitivities:
         who = f"Pin {effects.pin}, {effects.case}"

@@ -26,7 +26,7 @@ class OpinionRow:
 
 
 def _in_contact(unit: str) -> Column[OpinionRow]:
-    """Return a column of a unit that only rows in contact need."""
+    """Return a column of a unit that is empty unless the row is in contact."""
     return Column(f"{unit}_unit", lambda row: getattr(row.units, unit) if row.of.contact else None)
 
 
@@ -49,7 +49,7 @@ COLUMNS: list[Column[OpinionRow]] = [
 
 @dataclass(frozen=True)
 class LoadRow:
-    """The load per length of a band between two ends, computed and of CalculiX."""
+    """The load per length of a band between two values of z, ours and that of CalculiX."""
 
     of: Opinion
     connection: str
@@ -68,7 +68,7 @@ OPINION_LOAD_COLUMNS: list[Column[LoadRow]] = [
 ]
 
 
-# The keys of results.json.
+# Keys of results.json.
 OPINION = fields(
     "unknowns displacement_difference=displacement von_mises_difference=stress "
     "max_von_mises_same_mesh=ours max_von_mises_calculix=theirs note=complaint"
@@ -80,12 +80,14 @@ CONTACT = fields(
 
 
 def over_answer(opinion: Opinion) -> float | None:
-    """Return CalculiX's stress over the computed one."""
+    """Return CalculiX's stress over ours."""
     return None if opinion.deviation is None else 1.0 + opinion.deviation
 
 
 def opinion_tables(results: Results) -> list[Table[Any]]:
-    """Return a row per pin and case, and the loads per length of the rows in contact."""
+    """Return the table with a row for each pin and case, and the loads per length of rows in
+    contact.
+    """
     opinions, units = opinions_of(results), results.units
     loads = [
         LoadRow(o, band.name, *ends, ours, theirs, units)

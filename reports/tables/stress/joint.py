@@ -24,7 +24,10 @@ from reports.tables.column import (
 
 @dataclass(frozen=True)
 class LoadStep:
-    """The load per length of a band between two ends, which only some models have."""
+    """The load per length of a band at z.
+
+    z_start, z_end: the ends of its ring; None for models without rings.
+    """
 
     band: str
     z: float
@@ -41,9 +44,10 @@ def bearing_share(row: PinRow[BandContact]) -> float | None:
 
 
 def carrying_share(row: PinRow[BandContact]) -> float | None:
-    """Return the part of a band's length along which the lug pushes in the direction of its force.
+    """Return the fraction of a band's length along which the lug pushes in the direction of its
+    force.
 
-    None where the load is not given by rings, or there is no force.
+    The result is None where the load is not given by rings, or there is no force.
     """
     band = row.of
     if not band.ends or not band.force:
@@ -102,7 +106,7 @@ RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
 
 
 def _limit_load(row: PinRow[LugStress]) -> float | None:
-    """Return the lower end of the limit load of a row's lug, N, where it was computed."""
+    """Return the lower end of the limit load of a row's lug, a force, if it was computed."""
     lug = row.of.connection
     return next((x.lower for x in row.pin.lug_collapses if x.connection == lug), None)
 
@@ -126,7 +130,7 @@ LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
     Column("limit_load", _limit_load, "force", "limit load, at least", drop_if_empty=True),
     *unit_columns("force"),
 ]
-# The keys of results.json.
+# Keys of results.json.
 JOINT = fields("model bands bending_moment bending_moments remark")
 VARIATION = fields("what value length max_von_mises max_von_mises_interval=interval beneath")
 
@@ -134,8 +138,8 @@ VARIATION = fields("what value length max_von_mises max_von_mises_interval=inter
 def joint_tables(results: Results) -> list[Table[Any]]:
     """Return the tables of all pins in lugs.
 
-    They are bands, load per length along them, the maximum with the joint changed, and the stress
-    of lugs.
+    These are the bands, the loads per length along them, the maxima over the range of the joint,
+    and the stress of lugs.
     """
     units = results.units
     joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
@@ -186,5 +190,5 @@ def joint_json(joint: JointResult | None) -> dict[str, Any] | None:
 
 
 def lugs_word(over: JointRange) -> str:
-    """Return the words for the owner of the lugs of a range."""
+    """Return whether the lugs of a range are "assumed" or those of the "study"."""
     return "assumed" if over.assumed else "study"

@@ -16,16 +16,16 @@ PlaceName = Literal["surface", "section", "beneath", "case", "core", "unhardened
 
 
 def factor_at(pin: PinResult, stress: float | None, there: float | None = None) -> float | None:
-    """Return the yield strength of a row over a stress of it; None without either.
+    """Return the yield strength of a row over a stress of this row; None if either is missing.
 
-    there: the yield strength at the place of the stress, if it has its own.
+    there: the yield strength at the place of the stress, if it differs.
     """
     strength = there or pin.yield_strength
     return strength / stress if strength and stress else None
 
 
 def places_json(pin: PinResult) -> dict[str, Any]:
-    """Return the keys of a row; without contact or section where it has none."""
+    """Return the keys of the places of a row; a row without contact or section lacks its key."""
     places = pin.places
     if places is None:
         return {"governs": None}
@@ -45,8 +45,8 @@ def places_json(pin: PinResult) -> dict[str, Any]:
 
 
 def _plain(at: SurfacePlace | SectionPlace | ContactPlace) -> dict[str, Any]:
-    """Return a place without the keys that only pins with a hardened surface have, if it is none of
-    these.
+    """Return a place as JSON; the keys of pins with a hardened surface are left out where they are
+    None.
     """
     known: dict[str, Any] = plain(at)
     own = {"strength", "crushing"}
@@ -57,7 +57,7 @@ def _plain(at: SurfacePlace | SectionPlace | ContactPlace) -> dict[str, Any]:
 class PlaceRow:
     """A place of a pin in a case.
 
-    of: what the stress belongs to (`contact`: the field beneath it).
+    of: the record of the place; that of the contact gives the stress beneath contact.
     """
 
     pin: PinResult
@@ -100,7 +100,7 @@ class PlaceRow:
 
 
 def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
-    """Return surface, section and field beneath contact, as far as the row has them."""
+    """Return the places that a row has: surface, section, field beneath contact, hardened parts."""
     if pin.places is None:
         return []
     places = pin.places
@@ -111,8 +111,8 @@ def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
     return [PlaceRow(pin, name, of, units) for name, of in rows if of is not None]
 
 
-def _of(key: str, dimension: str = "") -> Column[PlaceRow]:
-    """Return a column of a number that only some of the places have."""
+def _optional_number(key: str, dimension: str = "") -> Column[PlaceRow]:
+    """Return a column of a number that only some places have."""
     return Column(key, lambda row: getattr(row.of, key, None), dimension)
 
 
@@ -121,13 +121,13 @@ PLACE_COLUMNS: list[Column[PlaceRow]] = [
     *fields("place governs"),
     *fields("max_von_mises=stress error_estimate=error", "stress"),
     *fields("safety_factor=factor"),
-    _of("verdict"),
+    _optional_number("verdict"),
     *fields("x=at.0 y=at.1 z=at.2", "length"),
     *fields("time", "time"),
-    *(_of(name, "force") for name in ("axial_force", "shear_force")),
-    *(_of(name, "moment") for name in ("bending_moment", "torque")),
-    _of("plastic_utilisation"),
-    *(_of(name, "length") for name in ("reach", "reach_required")),
+    *(_optional_number(name, "force") for name in ("axial_force", "shear_force")),
+    *(_optional_number(name, "moment") for name in ("bending_moment", "torque")),
+    _optional_number("plastic_utilisation"),
+    *(_optional_number(name, "length") for name in ("reach", "reach_required")),
     *unit_columns("length force stress time"),
 ]
 EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
@@ -140,7 +140,7 @@ EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
 
 
 def place_tables(results: Results) -> list[Table[Any]]:
-    """Return the places of all rows, one below the other, and the edges of lugs."""
+    """Return the places of all rows, and the edges of lugs."""
     units = results.units
     places = [row for pin in results.pins for row in place_rows(pin, units)]
     contacts = [(p, p.places.contact) for p in results.pins if p.places and p.places.contact]

@@ -15,7 +15,9 @@ from reports.tables.column import PIN_AND_CASE, Column, Table, fields, in_order,
 
 @dataclass(frozen=True)
 class ShownZone:
-    """A zone with its number on the pin; a circle has the same number in all cases."""
+    """A zone with its number on the pin; zones on the same circle have the same number in all
+    cases.
+    """
 
     number: int
     place: SingularZone
@@ -34,7 +36,9 @@ class ShownZone:
 
     @property
     def exponents(self) -> str:
-        """The measured and the theoretical exponent; at a load's edge theory is logarithmic."""
+        """The measured and the theoretical exponent; at the edge of a load theory gives a
+        logarithm.
+        """
         theory = self.place.exponent_theory
         known = "logarithm" if theory == 0.0 else engineering(theory, 3)
         return f"{engineering(self.place.exponent, 3)} / {known}"
@@ -47,10 +51,10 @@ class ShownZone:
 
 
 def pin_zones(results: Results, pin: str) -> dict[str, list[ShownZone]]:
-    """Return the zones of a pin by case, numbered from its start."""
+    """Return the zones of a pin by case, numbered from the start of the pin."""
     cases = [p for p in results.pins if p.pin == pin]
     every = [zone for p in cases for zone in p.singular_at]
-    # Cases differ in the point on the circle, not in the circle.
+    # Cases may differ in the point on the circle of a zone, but not in the circle.
     order = sorted({_circle(z): z.location[2] for z in every}.items(), key=lambda item: item[1])
     numbers = {circle: i for i, (circle, _) in enumerate(order, start=1)}
     return {p.case: [ShownZone(numbers[_circle(z)], z) for z in p.singular_at] for p in cases}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -282,3 +283,13 @@ def test_forces_and_moments_in_other_axes(tmp_path: Path) -> None:
     need_z = {"time": 1, "B.fx": 2, "B.fy": 3}
     with raises(TableError, "missing-column", "'B.fz'"):
         read(tmp_path, "0 1 2\n", need_z, axes={"B": JointAxes(turned)})
+
+
+def test_a_file_that_is_replaced_and_keeps_its_time_is_read_again(tmp_path: Path) -> None:
+    path, layout = tmp_path / "table.txt", Layout("case", NAMES, reading=FileReading())
+    first = []
+    for force in (1, 3):
+        path.write_text(f"t Fx Fy\n0 {force} 2\n1 3 4\n", encoding="utf-8")
+        os.utime(path, ns=(10**18, 10**18))
+        first.append(read_reactions(path, layout, unit, {"B", "C"}).forces[0, 0, 0])
+    assert first == [1.0, 3.0]

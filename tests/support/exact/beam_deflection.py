@@ -1,4 +1,4 @@
-"""Deflections of a stepped beam, by integrating its internal forces exactly.
+"""Deflections of a stepped beam, by exact integration of its internal forces.
 
 phi' = M / (E I)    u' = phi + V / (kappa G A)    w' = N / (E A)    beta' = T / (G J)
 """
@@ -13,8 +13,10 @@ from pinbase.arrays import Floats
 
 
 def deflections(forces: InternalForces, material: Material, z: Floats) -> Floats:
-    """Deflection u along x (m), slope phi (rad), shift w along the axis (m) and twist beta (rad) at
-    z (S,) in m: (S, 4, K). Zero within clamps; for an unconstrained pin, zero at z = 0.
+    """Return the deflection u along x (m), slope phi (rad), shift w along the axis (m) and twist
+    beta (rad) at z (S,) in m: (S, 4, K).
+
+    They are zero within clamps; for an unconstrained pin, zero at z = 0.
     """
     lengths = np.diff(forces.stations)
     soft = np.array([compliances(s, material) for s in forces.sections])
@@ -26,7 +28,7 @@ def deflections(forces: InternalForces, material: Material, z: Floats) -> Floats
         value = np.zeros((4, K))
         for c in reversed(cells) if backwards else cells:
             out[c] = _cell(forces.coefficients[c], soft[c], value)
-            if backwards:  # what it must start from to end as it does
+            if backwards:  # the start is shifted so that the end has the known value
                 rise = _value(out[c], lengths[c]) - value
                 turn = rise[1]
                 out[c, 0] -= rise
@@ -44,7 +46,9 @@ def deflections(forces: InternalForces, material: Material, z: Floats) -> Floats
 
 
 def _cell(f: Floats, soft: Floats, start: Floats) -> Floats:
-    """Coefficients (6, 4, K) in one cell of forces f (4, 4, K), from values (4, K) at its start."""
+    """Return the coefficients (6, 4, K) in one cell, from forces f (4, 4, K) and values (4, K) at
+    its start.
+    """
     out = np.zeros((6, *f.shape[1:]))
     by = np.arange(1.0, 5.0)[:, None]
     out[1:5, 1] = soft[MOMENT] * f[:, MOMENT] / by

@@ -1,4 +1,4 @@
-"""Exact fields of one harmonic: their loads on a section's mesh, and how far an answer is off."""
+"""Exact fields of one harmonic: their loads on a section's mesh, and the errors of a solution."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from fea.harmonic.assembly import Section, around, elasticity, strain_map
 from fea.harmonic.boundary import Outline, shapes, slopes
 from pinbase.arrays import Ints
 
-Field = Callable[[Floats, Floats], Floats]  # of r and z (...), with components last
+Field = Callable[[Floats, Floats], Floats]  # a function of r and z (...); components are last
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 
 
 @dataclass(frozen=True)
 class Exact:
-    """Amplitudes of harmonic n: displacement (..., 3) along r, theta, z; stress (..., 6), rr, tt,
-    zz, tz, rz, rt; body force (..., 3).
+    """An exact field of harmonic n, as functions of r and z.
+
+    displacement: amplitudes (..., 3) along r, theta, z. stress: (..., 6), rr, tt, zz, tz, rz, rt.
+    body: the body force (..., 3).
     """
 
     n: int
@@ -33,36 +35,40 @@ class Exact:
     body: Field = lambda r, z: np.zeros((*np.shape(r), 3))
 
     def at_nodes(self, space: Section) -> Floats:
-        """Displacement (N, 3, 1)."""
+        """Return the displacement at the nodes, (N, 3, 1)."""
         return self.displacement(*space.nodes.T)[..., None]
 
     def traction(self, x: Floats, tangent: Floats) -> Floats:
-        """(..., 3) at points x (..., 2) of an outline with unit tangents (..., 2)."""
+        """Return the traction (..., 3) at points x (..., 2) of an outline with unit tangents (...,
+        2).
+        """
         rr, _, zz, tz, rz, rt = np.moveaxis(self.stress(x[..., 0], x[..., 1]), -1, 0)
         n_r, n_z = tangent[..., 1], -tangent[..., 0]
         return np.stack([n_r * rr + n_z * rz, n_r * rt + n_z * tz, n_r * rz + n_z * zz], axis=-1)
 
 
 def on_unknowns(forces: Floats) -> Floats:
-    """Forces on the unknowns p, m, w of forces (N, 3) along r, theta, z, by virtual work."""
+    """Return the forces on the unknowns p, m, w for forces (N, 3) along r, theta, z, by virtual
+    work.
+    """
     R, T, Z = forces.T
     return np.stack([R + T, R - T, Z], axis=1).ravel()
 
 
 def unknowns_of(u: Floats) -> Floats:
-    """p, m, w of displacements (N, 3)."""
+    """Return the unknowns p, m, w of displacements (N, 3)."""
     U, V, W = u.T
     return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
 
 
 def displacements_of(unknowns: Floats) -> Floats:
-    """(N, 3, 1)."""
+    """Return the displacements (N, 3, 1) of the unknowns p, m, w."""
     p, m, w = unknowns.reshape(-1, 3).T
     return np.stack([p + m, p - m, w], axis=1)[..., None]
 
 
 def edge_tractions(space: Section, outline: Outline, exact: Exact) -> Floats:
-    """At the nodes of the outline's edges (E, 3, 3, 1)."""
+    """Return the exact tractions at the nodes of the outline's edges, (E, 3, 3, 1)."""
     x = space.nodes[outline.nodes]
     tangent = np.einsum("qi,eia->eqa", slopes(np.array([-1.0, 1.0, 0.0])), x)
     tangent /= np.linalg.norm(tangent, axis=2, keepdims=True)
@@ -70,7 +76,7 @@ def edge_tractions(space: Section, outline: Outline, exact: Exact) -> Floats:
 
 
 def boundary_forces(space: Section, outline: Outline, exact: Exact) -> Floats:
-    """Forces on the unknowns by the tractions all over the outline."""
+    """Return the forces on the unknowns due to the exact tractions on the whole outline."""
     x = space.nodes[outline.nodes]
     at = np.einsum("qi,eia->eqa", shapes(_POINTS), x)
     along = np.einsum("qi,eia->eqa", slopes(_POINTS), x)
@@ -83,7 +89,9 @@ def boundary_forces(space: Section, outline: Outline, exact: Exact) -> Floats:
 
 
 def _fine(space: Section) -> tuple[Basis, Floats, Floats, Floats, Floats]:
-    """A basis with many points: with r, z, areas times r (M, Q) and shape functions (6, M, Q)."""
+    """Return a basis with many integration points, with r, z, areas times r (M, Q), and shape
+    functions (6, M, Q) at them.
+    """
     basis = Basis(space.section.mesh, ElementTriP2(), intorder=8)
     r, z = (np.asarray(x) for x in basis.global_coordinates())
     values = np.stack([np.broadcast_to(np.asarray(basis.basis[i][0]), r.shape) for i in range(6)])
@@ -91,8 +99,8 @@ def _fine(space: Section) -> tuple[Basis, Floats, Floats, Floats, Floats]:
 
 
 def _gradients(basis: Basis, r: Floats) -> Floats:
-    """N,r N,z and N / r of the shape functions at a basis' points, which are at r (M, Q), m;
-    (M, Q, 3, 6), 1/m.
+    """Return N,r N,z and N / r of the shape functions, (M, Q, 3, 6) in 1/m, at a basis' points,
+    which are at r (M, Q), m.
     """
     parts = [
         (*basis.basis[i][0].grad, np.asarray(basis.basis[i][0]) / r) for i in range(basis.Nbfun)
@@ -101,7 +109,7 @@ def _gradients(basis: Basis, r: Floats) -> Floats:
 
 
 def body_forces(space: Section, exact: Exact) -> Floats:
-    """Forces on the unknowns by the body force."""
+    """Return the forces on the unknowns due to the exact body force."""
     _, r, z, weight, values = _fine(space)
     found = np.einsum("mq,imq,mqa->mia", around(exact.n) * weight, values, exact.body(r, z))
     forces = np.zeros((len(space.nodes), 3))
@@ -112,8 +120,10 @@ def body_forces(space: Section, exact: Exact) -> Floats:
 def with_edges_moved(
     space: Section, outline: Outline, material: Material, exact: Exact, axis: Ints
 ) -> Floats:
-    """Displacements (N, 3, 1) where those of the outline are the exact ones; axis: unknowns that
-    vanish.
+    """Return the displacements (N, 3, 1) for the body force, with the exact displacements
+    prescribed on the outline.
+
+    axis: unknowns that vanish on the axis.
     """
     edges = np.setdiff1d(np.unique(outline.nodes), space.section.axis)
     on_edges = (3 * edges[:, None] + np.arange(3)).ravel()
@@ -128,7 +138,9 @@ def with_edges_moved(
 
 
 def errors(space: Section, material: Material, exact: Exact, u: Floats) -> tuple[float, float]:
-    """Relative L2 errors, in space, of displacements u (N, 3, 1) and of the elements' stresses."""
+    """Return the relative L2 errors over the volume, of displacements u (N, 3, 1) and of the
+    elements' stresses.
+    """
     basis, r, z, weight, values = _fine(space)
     moved = np.einsum("imq,mia->mqa", values, u[space.elements][..., 0])
     local = unknowns_of(u[..., 0]).reshape(-1, 3)[space.elements]

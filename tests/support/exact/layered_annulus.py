@@ -1,8 +1,8 @@
-"""Plane annuli of bonded rings under a pressure p cos n theta in the bore, exactly.
+"""Exact solution of plane annuli of bonded rings under a pressure p cos n theta in the bore.
 
 In a ring u_r = U r^m cos n theta and u_theta = V r^m sin n theta are in equilibrium for m = n + 1,
-n - 1, 1 - n and -1 - n; where two are one, a logarithm takes the other's place: Michell's solution
-in displacements. n = 0 is Lame's, of which there are two.
+n - 1, 1 - n and -1 - n. Where two of these are equal, a solution with a logarithm replaces one of
+them: Michell's solution in displacements. n = 0 is Lame's problem, with two solutions.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ Ring = tuple[float, float, Material]  # inner and outer radius, m
 
 
 def widening(rings: list[Ring], n: int, strain: bool) -> float:
-    """u_r at the bore per pressure, m/Pa, in plane strain or plane stress; for n = 1 against a
-    reaction of constant direction outside, and measured from that surface's mean motion.
+    """Return u_r at the bore per pressure, m/Pa, in plane strain or plane stress.
+
+    For n = 1 a reaction of constant direction acts on the outer surface, and u_r is measured from
+    the mean motion of that surface.
     """
     a, b, unit = rings[0][0], rings[-1][1], rings[0][2].youngs_modulus
 
@@ -47,7 +49,9 @@ def widening(rings: list[Ring], n: int, strain: bool) -> float:
 
 
 def _solutions(r: float, lam: float, mu: float, n: int) -> Floats:
-    """u_r, u_theta, s_rr and s_rt, (4, 4), of four solutions, or two and zeros for n = 0."""
+    """Return u_r, u_theta, s_rr and s_rt, (4, 4), of four solutions; for n = 0 of two,
+    and zeros.
+    """
     if n == 0:
         stress = (_stress(m, lam, mu, n)[0, 0] * r ** (m - 1.0) for m in (1.0, -1.0))
         lame = [np.array([r**m, 0.0, s, 0.0]) for m, s in zip((1.0, -1.0), stress, strict=True)]
@@ -68,13 +72,15 @@ def _solutions(r: float, lam: float, mu: float, n: int) -> Floats:
 
 
 def _stress(m: float, lam: float, mu: float, n: int) -> Floats:
-    """s_rr, s_tt and s_rt over r^(m - 1) by U and V, (3, 2)."""
+    """Return s_rr, s_tt and s_rt over r^(m - 1) for U and V, (3, 2)."""
     trace = lam * np.array([m + 1.0, n])
     rr, tt = trace + 2.0 * mu * np.array([m, 0.0]), trace + 2.0 * mu * np.array([1.0, n])
     return np.stack([rr, tt, mu * np.array([-n, m - 1.0])])
 
 
 def _equilibrium(m: float, lam: float, mu: float, n: int) -> Floats:
-    """What is left of it along r and theta, over r^(m - 2), by U and V, (2, 2)."""
+    """Return the residuals of equilibrium along r and theta, over r^(m - 2), for U and V,
+    (2, 2).
+    """
     rr, tt, rt = _stress(m, lam, mu, n)
     return np.stack([m * rr - tt + n * rt, (m + 1.0) * rt - n * tt])

@@ -33,9 +33,11 @@ PERSSON = _persson()
 
 
 def disc_and_plate(highest: int) -> Floats:
-    """Compliances (N + 1, 1, 1) under p cos n theta, R = E = 1, plane strain, by Muskhelishvili: of
-    the disc [k / (n + 1) + 1 / (n - 1)] / (4 mu), of the hole with n + 1 and n - 1 exchanged. What
-    n = 1 does is a shift, which is free.
+    """Return the compliances (N + 1, 1, 1) under p cos n theta, for R = E = 1 in plane strain, by
+    Muskhelishvili.
+
+    Those of the disc are [k / (n + 1) + 1 / (n - 1)] / (4 mu), those of the hole the same with n +
+    1 and n - 1 exchanged. n = 1 is left zero: it only shifts the disc, which is free to move.
     """
     mu, k = 0.5 / (1.0 + NU), 3.0 - 4.0 * NU
     out = np.zeros((highest + 1, 1, 1))
@@ -48,18 +50,20 @@ def disc_and_plate(highest: int) -> Floats:
 def plane(
     clearance: float, sectors: int = 96, highest: int = 6, tail: float = 1.0
 ) -> ContactProblem:
-    """A disc in a plate, of unit radius and thickness; radial clearance."""
+    """Return the contact of a disc in a plate, of unit radius and thickness, with a radial
+    clearance.
+    """
     bands = Bands(np.zeros(1), np.ones(1), np.ones(1), np.zeros(1, int), np.array([clearance]))
     both = np.array([tail * 4.0 * (1.0 - NU * NU)])
     return ContactProblem(bands, disc_and_plate(highest), both, [math.inf], sectors)
 
 
 def roller() -> tuple[float, float]:
-    """The peak pressure, MPa, and the half width of contact, mm, of a cylinder of R = 50 mm on a
-    plane of a third of its modulus.
+    """Return the peak pressure, MPa, and the half width of contact, mm, of a cylinder of R = 50 mm
+    on a plane of a third of its modulus.
 
-    A pin of R = 150 mm with three times as much clearance opens its gap as the cylinder does; that
-    its shift goes as the cosine of the angle is felt by 0.2 %.
+    A pin of R = 150 mm with three times as much clearance has the same gap as the cylinder; that
+    the shift enters the gap with the cosine of the angle changes the result by 0.2 %.
 
     Source: NAFEMS R0094, test 1: 35 kN/mm, 210 on 70 GPa, nu = 0.3.
     """

@@ -22,7 +22,10 @@ D = 0.02
 
 
 def bar(bore: float = 0.0) -> Pin:
-    """Bands two diameters long at the ends of a bar, four between them; bore in diameters."""
+    """Return a bar with bands two diameters long at its ends and four diameters between them.
+
+    bore: in diameters
+    """
     ends = (
         Segment(2 * D, D, bore * D, connection="a"),
         Segment(2 * D, D, bore * D, connection="b"),
@@ -31,7 +34,9 @@ def bar(bore: float = 0.0) -> Pin:
 
 
 def couples(axis: int) -> PinLoads:
-    """Of 1 N m at both ends of the bar, about y (axis 1) or its own (2)."""
+    """Return couples of 1 N m at both ends of the bar, about y (axis 1) or about its own
+    axis (2).
+    """
     moments = np.zeros((1, 2, 3))
     moments[0, :, axis] = 1.0, -1.0
     return PinLoads("couples", ("a", "b"), np.zeros((1, 2, 3)), moments)
@@ -45,13 +50,19 @@ def limit(
 
 
 def elastic_moment(bore: float = 0.0) -> float:
-    """At which a round bar begins to yield in bending, N m."""
+    """Return the moment at which a round bar begins to yield in bending, N m.
+
+    bore: in diameters
+    """
     return YIELD * math.pi / 32 * D**3 * (1 - bore**4)
 
 
 def cylinder(around: int) -> tuple[FlowingBody, Floats, RefinedElements]:
-    """A quarter of a thick cylinder, 1 and 1.3 m, in plane strain, the forces of 1 Pa from outside,
-    which makes it flow as a pressure inside does, and its elements with more points.
+    """Return a quarter of a thick cylinder in plane strain, the forces on it, and its elements with
+    more integration points.
+
+    Its radii are 1 and 1.3 m. The forces are those of 1 Pa from outside, which makes it flow as a
+    pressure from inside does.
     """
     pin = Pin("ring", (Segment(0.2, 2.6, 2.0, connection="a"),))
     mesh = hexahedra(pin, HexSize(around, 1.0), 1)

@@ -1,5 +1,7 @@
-"""Polynomials of r and z, and what elasticity makes of displacements that are such: stress, and the
-body force that holds them in balance, without rounding but that of the coefficients.
+"""Polynomials of r and z, with the stress and the body force in equilibrium with displacements that
+are polynomials.
+
+These are exact but for the rounding of the coefficients.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ SIZE = 10  # one more than the highest power
 
 
 def polynomial(terms: dict[tuple[int, int], float]) -> Floats:
-    """Coefficients (SIZE, SIZE) from those of r^i z^j."""
+    """Return coefficients (SIZE, SIZE) of a polynomial, from those of its terms r^i z^j."""
     c = np.zeros((SIZE, SIZE))
     for powers, factor in terms.items():
         c[powers] = factor
@@ -24,25 +26,28 @@ def polynomial(terms: dict[tuple[int, int], float]) -> Floats:
 
 
 def by_r(c: Floats) -> Floats:
-    """Derivative by r."""
+    """Return the derivative by r."""
     return np.pad(P.polyder(c, axis=0), ((0, 1), (0, 0)))
 
 
 def by_z(c: Floats) -> Floats:
-    """Derivative by z."""
+    """Return the derivative by z."""
     return np.pad(P.polyder(c, axis=1), ((0, 0), (0, 1)))
 
 
 def over_r(c: Floats, size: float = 0.0) -> Floats:
-    """Divided by r, with which it must vanish: this is the condition on the axis. size: of what it
-    is made of.
+    """Return the polynomial divided by r; on the axis it must vanish, or this fails.
+
+    size: magnitude of the terms that it is the sum of, for the tolerance
     """
     assert np.abs(c[0]).max() <= 1e-12 * max(float(np.abs(c).max()), size)
     return np.pad(c[1:], ((0, 1), (0, 0)))
 
 
 def manufactured(material: Material, n: int, U: Floats, V: Floats, W: Floats) -> Exact:
-    """From displacement amplitudes; fails if they are not smooth on the axis."""
+    """Return the exact field with these displacement amplitudes; fails if it is not smooth on the
+    axis.
+    """
     strain = np.stack(
         [
             by_r(U),

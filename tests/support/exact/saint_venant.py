@@ -1,15 +1,14 @@
-"""Saint-Venant's solutions for a round bar or tube, all along it, as fields of one harmonic.
+"""Saint-Venant's solutions for a round bar or tube, over its whole length, as fields of one
+harmonic.
 
 Timoshenko & Goodier, Theory of Elasticity, 3rd ed., secs. 99 (stretching), 101 (torsion), 102
 (bending), 119 to 121 (flexure; the hollow one is due to Love). Tension, torsion and bending are per
 unit of strain, twist and curvature. In flexure the curvature is L - z, x is the axis of the force,
 and with chi = cos(theta) f(r)
-
     u_x = L z^2 / 2 - z^3 / 6 + nu (L - z) (x^2 - y^2) / 2    u_y = nu (L - z) x y
     u_z = -(L z - z^2 / 2) x - chi
-
-equilibrium along z says that the Laplacian of chi is 2 x, free surfaces that f' = -nu r^2 / 2 at
-r = a and b: f = r^3 / 4 + A r + B / r with q = 3/4 + nu/2, A = -q (a^2 + b^2), B = -q a^2 b^2.
+Equilibrium along z requires that the Laplacian of chi is 2 x, free surfaces that f' = -nu r^2 / 2
+at r = a and b: f = r^3 / 4 + A r + B / r with q = 3/4 + nu/2, A = -q (a^2 + b^2), B = -q a^2 b^2.
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ from tests.support.exact.exact_fields import Exact
 
 
 def vector(*components: Floats | float) -> Floats:
-    """Components last, numbers the same everywhere."""
+    """Return an array with the components last; numbers are the same at all points."""
     return np.stack(np.broadcast_arrays(*components), axis=-1)
 
 
@@ -56,14 +55,14 @@ def bending(material: Material) -> Exact:
 
 
 def flexure(material: Material, b: float, a: float, L: float) -> Exact:
-    """From z = 0 to L, radii b and a."""
+    """Return the field of flexure from z = 0 to L, with inner radius b and outer radius a."""
     E, nu = material.youngs_modulus, material.poisson_ratio
     _, mu = material.lame
     q = 0.75 + nu / 2.0
     A, B = -q * (a**2 + b**2), -q * a**2 * b**2
 
     def by_r(r: Floats, power: int) -> Floats:
-        """B / r^power, which is zero in a solid bar."""
+        """Return B / r^power, which is zero in a solid bar."""
         return np.asarray(B / r**power if B else 0.0 * r)
 
     def displacement(r: Floats, z: Floats) -> Floats:
@@ -80,5 +79,5 @@ def flexure(material: Material, b: float, a: float, L: float) -> Exact:
 
 
 def end_force(material: Material, b: float, a: float) -> float:
-    """Of `flexure`, N."""
+    """Return the force at the end of the bar in `flexure`, N."""
     return material.youngs_modulus * math.pi * (a**4 - b**4) / 4.0

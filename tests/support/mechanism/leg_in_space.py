@@ -24,7 +24,9 @@ Y, SPIN_AXIS = (0.0, 1.0, 0.0), (-1.0, 0.0, 0.0)
 
 
 def leg_linkage(leg: Leg) -> SpaceLinkage:
-    """The leg and its wheel as drawn at beta = 0 on the aircraft, whose axes are the ground's."""
+    """Return the leg and its wheel as drawn at beta = 0 on the aircraft, whose axes are the
+    ground's.
+    """
     hinge = np.array([leg.l1, 0.0, leg.l2])
     wheel = tuple((hinge - [leg.l4, 0.0, leg.l3]).tolist())
     centre = tuple((hinge - [0.25 * leg.l4, 0.0, 0.75 * leg.l3]).tolist())
@@ -54,14 +56,19 @@ def _rows(tensor: Floats) -> Inertia:
 def solved(
     leg: Leg, drives: Sequence[tuple[float, float, float]], ground: GroundState
 ) -> tuple[SpaceDynamics, BodyMomenta]:
-    """One instant. drives: value and rates of fold angle and spin. ground: its state, T = 1."""
+    """Return the dynamics and momenta at one instant.
+
+    drives: value and rates of fold angle and spin. ground: its state, T = 1.
+    """
     motion = space_move(leg_linkage(leg), [StateDrive(*d) for d in drives], np.zeros(1))
     dynamics = space_reactions("leg", motion, [GroundInertia(lambda times: ground)], timed=False)
     return dynamics, body_momenta(motion, lambda times: ground)
 
 
 def quantities(particles: Particles, now: float) -> tuple[dict[str, Floats], Floats]:
-    """Every quantity at one instant, primed axes, and the matrix from these to the world's."""
+    """Return every quantity at one instant in primed axes, and the matrix from these to the
+    world's.
+    """
     leg, t = particles.leg, np.array([now + 0j])
     state = ground_of(particles, now)
     drives = [_rates(wave, t) for wave in (particles.beta, particles.spin)]
@@ -81,7 +88,7 @@ def quantities(particles: Particles, now: float) -> tuple[dict[str, Floats], Flo
             f"L {body}": bodies.angular_momentum[0, k],
             f"L rate {body}": bodies.angular_momentum_rate[0, k],
         }
-    # The study's drive turns the leg about y' at B: its reaction is part of the moment there.
+    # The study's drive turns the leg about y' at B: its reaction is part of the moment at B.
     actuator, spin_moment = dynamics.drive[0]
     found["F_B"] = reactions.forces[0, 0]
     found["M_B"] = reactions.moments[0, 0] - actuator * np.array(Y)
@@ -94,7 +101,9 @@ def quantities(particles: Particles, now: float) -> tuple[dict[str, Floats], Flo
 
 
 def ground_of(particles: Particles, now: float) -> GroundState:
-    """The aircraft's motion at one instant, by differentiating its place and its matrix."""
+    """Return the aircraft's motion at one instant, by differentiating its position and
+    its matrix.
+    """
     t = np.array([now + 0j])
     origin, axes = particles.a(now), particles.aircraft
     R, rate, second = (x[0].real for x in (axes(t), derivative(axes, t), derivative(axes, t, 2)))

@@ -1,8 +1,8 @@
 """The spatial leg and its wheel as particles carried by rotation matrices.
 
-Nothing here knows a formula of velocity, acceleration, inertia or rate of momentum: positions are
-products of matrices, and everything else is their numerical derivative, taken over a circle of
-complex times (Cauchy's integral), which is exact to rounding for these analytic motions.
+No formula of velocity, acceleration, inertia or rate of momentum is used here: positions are
+products of matrices, and everything else is their numerical derivative over a circle of complex
+times (Cauchy's integral), which is exact to rounding for these analytic motions.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RADIUS = 0.25  # s; the motions below stay moderate this far from the real times
 
 
 def derivative(f: Function, t: Complex, order: int = 1) -> Complex:
-    """Derivative at complex times t (T,) of f: (T,) -> (T, ...)."""
+    """Return the derivative at complex times t (T,) of f: (T,) -> (T, ...)."""
     turn = np.exp(2j * np.pi * np.arange(CIRCLE) / CIRCLE)
     values = f((t[:, None] + RADIUS * turn).ravel())
     values = values.reshape(len(t), CIRCLE, *values.shape[1:])
@@ -32,7 +32,7 @@ def derivative(f: Function, t: Complex, order: int = 1) -> Complex:
 
 @dataclass(frozen=True)
 class Wave:
-    """offset + rate t + sum of amplitude sin(frequency t + phase)."""
+    """The function offset + rate t + sum of amplitude sin(frequency t + phase)."""
 
     offset: complex
     rate: float
@@ -46,7 +46,7 @@ class Wave:
 
 
 def turn(axis: int, angle: Complex) -> Complex:
-    """(T, 3, 3): rotation matrices about a coordinate axis."""
+    """Return rotation matrices about a coordinate axis, (T, 3, 3)."""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     matrix = np.zeros((len(angle), 3, 3), dtype=complex)
     matrix[:, axis, axis] = 1.0
@@ -57,7 +57,9 @@ def turn(axis: int, angle: Complex) -> Complex:
 
 
 def cloud_inertia(mass: Floats, at: Floats) -> Floats:
-    """(3, 3) of particles (N,) at (N, 3), about the origin."""
+    """Return the inertia tensor (3, 3) about the origin, of particles with masses (N,) at
+    (N, 3).
+    """
     square = np.sum(at**2, axis=1)
     return np.asarray(np.sum(mass * square) * np.eye(3) - (at.T * mass) @ at)
 
@@ -90,7 +92,9 @@ class Leg:
 
 @dataclass(frozen=True)
 class LegMotion:
-    """Motion at T instants: speed of A, yaw, fold angle, spin of the wheel, and rates, (T,)."""
+    """Motion at T instants: speed of A, yaw rate, fold angle, spin of the wheel, and their rates,
+    (T,).
+    """
 
     v_v: Floats
     a_v: Floats
@@ -105,9 +109,10 @@ class LegMotion:
 
 @dataclass(frozen=True)
 class Particles:
-    """One leg, one motion. masses (N,) kg, offsets (N, 3) m from D or C.
+    """A leg and its motion, as particles.
 
-    follow: how far A's course follows the yaw: 1 entirely, 0 not at all.
+    masses: (N,) kg. offsets: (N, 3) m from D or C.
+    follow: how far the direction of A's velocity follows the yaw: 1 entirely, 0 not at all.
     """
 
     leg: Leg
@@ -122,7 +127,7 @@ class Particles:
     follow: float
 
     def motion(self, times: Floats) -> LegMotion:
-        """The motion in numbers."""
+        """Return the motion as numbers at these times."""
         t = times.astype(complex)
 
         def rates(wave: Wave) -> tuple[Floats, Floats, Floats]:
@@ -145,11 +150,11 @@ class Particles:
         )
 
     def aircraft(self, t: Complex) -> Complex:
-        """(T, 3, 3): primed axes to the world."""
+        """Return the matrices from primed axes to the world's, (T, 3, 3)."""
         return turn(0, np.full_like(t, self.leg.slope)) @ turn(2, self.heading(t))
 
     def a(self, now: float) -> Function:
-        """World position of A, which at `now` moves along y'."""
+        """Return the world position of A as a function of time; at `now` A moves along y'."""
 
         def position(t: Complex) -> Complex:
             # Gauss-Legendre over the straight line from 0 to the complex time.
@@ -166,7 +171,10 @@ class Particles:
         return position
 
     def carried(self, now: float, body: str) -> Function:
-        """World positions (T, N, 3): body "B", "C", "D", "leg" or "wheel"."""
+        """Return the world positions (T, N, 3) of a body, as a function of time.
+
+        body: "B", "C", "D", "leg" or "wheel"
+        """
         leg = self.leg
         hinge = np.array([leg.l1, 0.0, leg.l2])
         wheel_centre = np.array([-leg.l4, 0.0, -leg.l3])
@@ -194,7 +202,7 @@ class Particles:
         return position
 
     def state(self, times: Floats, body: str) -> tuple[Floats, Floats, Floats]:
-        """Position, velocity, acceleration in the world, (T, N, 3) each."""
+        """Return position, velocity and acceleration in the world's axes, (T, N, 3) each."""
         found = []
         for time in times:
             f, t = self.carried(float(time), body), np.array([time + 0j])
@@ -204,7 +212,9 @@ class Particles:
 
 
 def random_particles(seed: int, follow: float | None = None) -> Particles:
-    """A random leg, not symmetric, with a wheel of three rings and a hub, on a random motion."""
+    """Return a random leg, not symmetric, with a wheel of three rings and a hub, in a random
+    motion.
+    """
     rng = np.random.default_rng(seed)
 
     def wave(offset: float, rate: float, size: float) -> Wave:

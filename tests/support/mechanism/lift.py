@@ -1,10 +1,10 @@
 """A planar linkage as one in space, with the same motion and the same forces in its plane.
 
 Pins become revolute joints about z, sliders prismatic ones, welds fixed ones. A floating pin is
-fixed to the body of its first connection, and a particle to its pin, as both could spin about
-themselves. Of moments of inertia a planar linkage knows the one about z; a body is taken as a
-lamina, alike about all axes in its plane: half of it about each, the least that any flat body has
-(Ixx + Iyy = Izz). In a planar motion these two have no effect.
+fixed to the body of its first connection, and a particle to its pin, since both could otherwise
+spin about their own axes. Of the moments of inertia a planar linkage has only the one about z; a
+body is taken as a lamina with equal moments about all axes in its plane: half of that about z each,
+the least that any flat body has (Ixx + Iyy = Izz). In a planar motion these two have no effect.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ Lifted = tuple[SpaceLinkage, tuple[SpaceLoad, ...]]
 
 
 def lift(linkage: Linkage, loads: Sequence[Load] = (), offsets: Offsets | None = None) -> Lifted:
-    """A planar linkage and the loads on it, in space.
+    """Return a planar linkage and the loads on it, in space.
 
-    Forces of connections have their names, drives and stops theirs.
+    The forces of connections are named after the connections; drives and stops keep their names.
     offsets: where links lie along z; by default all in the plane z = 0. Loads are in the planes of
     their bodies.
 
@@ -56,7 +56,7 @@ def lift(linkage: Linkage, loads: Sequence[Load] = (), offsets: Offsets | None =
 
 
 class _Lift:
-    """One linkage on its way into space."""
+    """A planar linkage being lifted into space."""
 
     def __init__(self, linkage: Linkage, offsets: Offsets) -> None:
         self.linkage, self.offsets = linkage, offsets
@@ -94,7 +94,7 @@ class _Lift:
         return in_space, tuple(lifted_loads)
 
     def _at(self, point: Point, body: str) -> Vector:
-        """A point in the plane of a body."""
+        """Return a point in the plane of a body."""
         return (*point, self.z[body])
 
     def _body(self, item: Body) -> RigidBody:
@@ -103,7 +103,7 @@ class _Lift:
         )
 
     def _pin(self, joint: Joint) -> Iterator[SpaceJoint]:
-        """The joints of a pin, one for each connection and named after it."""
+        """Yield the joints of a pin, one for each connection and named after it."""
         carrier = self.linkage.carrier(joint)
         turning = [c.body for c in joint.connections if not self._particle(c.body)]
         holds = turning[0] if joint.fixed_in is None and turning else None
@@ -115,7 +115,7 @@ class _Lift:
                 yield SpaceJoint(c.name, "revolute", carrier, c.body, at, AXIS, friction=c.friction)
 
     def _particle(self, body: str) -> bool:
-        """Whether a body is a particle on a pin, which has no angle."""
+        """Return whether a body is a particle on a pin, which has no angle."""
         on_slider = any(body in (s.base, s.moving) for s in self.linkage.sliders)
         item = next((b for b in self.linkage.bodies if b.name == body), None)
         return item is not None and item.inertia is None and not on_slider
@@ -134,7 +134,7 @@ class _Lift:
         ]
 
     def _welds(self) -> Iterator[SpaceJoint]:
-        """The welds, each once between two bodies of one piece."""
+        """Yield the welds, skipping one between two bodies that others already connect."""
         piece = {name: name for name in (*(b.name for b in self.linkage.bodies), GROUND)}
         for b in self.linkage.bodies:
             if b.welded is None or piece[b.name] == piece[b.welded]:
@@ -145,7 +145,9 @@ class _Lift:
             yield SpaceJoint(f"weld of {b.name}", "fixed", b.welded, b.name, at)
 
     def _ratio(self, teeth: Teeth) -> tuple[list[Measured], Ratio]:
-        """The teeth of two bodies, and the angles of gears against their carrier."""
+        """Return the teeth of two bodies as a ratio, and the angles of gears relative to their
+        carrier.
+        """
         angles: list[Measured] = []
         names, weights = [], []
         for n, (side, sign) in enumerate(zip(teeth.sides, (1.0, -1.0), strict=True), 1):
@@ -169,7 +171,7 @@ class _Lift:
     # --- loads ------------------------------------------------------------------------------------
 
     def _load(self, load: Load) -> tuple[list[Measured], SpaceLoad]:
-        """A load, and the coordinates that it is measured along."""
+        """Return a load, and the coordinates that it depends on."""
         if isinstance(load, Spring):
             name = f"spring {load.name}"
             coordinates, name = self._coordinate(name, load.between)
@@ -194,11 +196,11 @@ class _Lift:
         return coordinates, replace(force, times=Varying(Coordinate(name), load.times.curve))
 
     def _unused(self, times: Varying[Motion]) -> str:
-        """A name of a load's coordinate that no other has."""
+        """Return a name for a load's coordinate that no other coordinate has."""
         return f"argument {id(times)}"
 
     def _coordinate(self, name: str, of: Distance | Position) -> tuple[list[Measured], str]:
-        """The coordinates to add for a measure, and the name of that which it is."""
+        """Return the coordinates to add for a measure, and the name of its coordinate."""
         match of:
             case Position(Slider() as slider):
                 return [], slider.name
@@ -212,12 +214,17 @@ class _Lift:
 
 
 def slider_joint(slider: Slider) -> str:
-    """Name of a slider's joint: connections may have the name of a slider."""
+    """Return the name of a slider's joint, which differs from the slider's: connections may have
+    that.
+    """
     return f"slider {slider.name}"
 
 
 def lamina(inertia: float) -> Inertia:
-    """Inertia tensor of a lamina, alike about all axes in it. inertia: about z, kg m^2."""
+    """Return the inertia tensor of a lamina with equal moments about all axes in its plane.
+
+    inertia: about z, kg m^2.
+    """
     half = 0.5 * inertia
     rows = np.diag([half, half, inertia]).tolist()
     x, y, z = (tuple(row) for row in rows)

@@ -1,4 +1,4 @@
-"""The machines that ship, solved, and what to read from them."""
+"""The shipped machines, solved, and quantities read from their results."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def drive(case: CaseLoads) -> Any:
 
 
 def force(case: CaseLoads, connection: str, at: int = 0) -> complex:
-    """On the body, by its pin."""
+    """Return the force of a connection's pin on the body, as a complex number."""
     x, y, _ = case.reactions.force(connection)[at]
     return complex(-x, -y)
 

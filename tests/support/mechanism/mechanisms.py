@@ -1,4 +1,4 @@
-"""Linkages to try things on: four-bars and slider-cranks of any proportions."""
+"""Linkages for tests: four-bars and slider-cranks of any proportions."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from loads import GROUND, Body, Connection, Joint, Linkage, Sharing, Slider, Tur
 
 
 def circles(p: complex, a: float, q: complex, b: float, side: float) -> complex:
-    """The point at distances a from p and b from q, left (side 1) or right (-1) of p to q."""
+    """Return the point at distances a from p and b from q, left (side 1) or right (-1) of
+    p to q.
+    """
     d = abs(q - p)
     along = (a * a - b * b + d * d) / (2.0 * d)
     return complex(p + (q - p) / d * (along + 1j * side * np.sqrt(a * a - along * along)))
@@ -29,7 +31,9 @@ def four_bar(
     side: float = 1.0,
     gravity: tuple[float, float] = (0.0, -9.81),
 ) -> Linkage:
-    """Crank on O2 at the origin, rocker on O4 at (ground, 0); floating pins of 0.1 and 0.2 kg."""
+    """Return a crank on O2 at the origin and a rocker on O4 at (ground, 0); floating pins of 0.1
+    and 0.2 kg.
+    """
     a = crank * np.exp(1j * angle)
     b = circles(a, coupler, ground, rocker, side)
     o4 = complex(ground)
@@ -61,8 +65,8 @@ def slider_crank(
     masses: tuple[float, float, float] = (1.0, 0.8, 0.5),
     gravity: tuple[float, float] = (0.0, 0.0),
 ) -> Linkage:
-    """Crank on O at the origin, a block on the ground along x at y = offset; all pins massless and
-    fixed in the crank's and the rod's outer ends.
+    """Return a crank on O at the origin with a block on the ground along x at y = offset; all pins
+    are massless and fixed in the outer ends of the crank and the rod.
     """
     a = crank * np.exp(1j * angle)
     c = complex(a.real + np.sqrt(rod**2 - (a.imag - offset) ** 2), offset)
@@ -87,7 +91,9 @@ def slider_crank(
 
 
 def coupled_wheels(*stiffness: float) -> Linkage:
-    """A parallelogram with a third crank, which is redundant and needs a rule."""
+    """Return a parallelogram with a third, redundant crank, so that the forces need a rule of
+    sharing.
+    """
     linkage = four_bar(1.0, 0.5, 1.0, 0.5, angle=1.0)
     return replace(
         linkage,

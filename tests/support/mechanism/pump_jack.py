@@ -1,6 +1,7 @@
 """The pump jack of examples/own_mechanism.py by Newton's and Euler's equations, body by body.
 
-Positions in closed form, accelerations by differences; complex numbers, SI.
+Positions are in closed form, accelerations by finite differences; points are complex numbers, in
+SI.
 """
 
 from __future__ import annotations
@@ -20,7 +21,9 @@ LOAD, GRAVITY = -8000j, -9.81j
 
 
 def forces(times: Floats) -> tuple[dict[str, Floats], Floats]:
-    """Size of the force at every joint, (T,) N, and the crank's torque, (T,) N m."""
+    """Return the magnitude of the force at every joint, (T,) N, and the crank's torque,
+    (T,) N m.
+    """
     a, b = _joints(times)
     head = GROUND + 1.2 * (GROUND - b)
     crank, pitman, beam = _centres(times)
@@ -43,7 +46,7 @@ def forces(times: Floats) -> tuple[dict[str, Floats], Floats]:
 
 
 def _joints(times: Floats) -> tuple[Complex, Complex]:
-    """A and B, by the law of cosines in the triangle A, O4, B."""
+    """Return A and B, by the law of cosines in the triangle A, O4, B."""
     a = 0.5 * np.exp(1j * (np.pi / 3 + 2 * np.pi * times / PERIOD))
     way = GROUND - a
     inside = np.arccos((2.0**2 + np.abs(way) ** 2 - 1.5**2) / (2 * 2.0 * np.abs(way)))
@@ -60,7 +63,7 @@ def _second(course: Callable[[Floats], Any], times: Floats) -> Any:
 
 
 def _turning(side: Callable[[Floats], Complex], times: Floats) -> Floats:
-    """Angular acceleration of a side of a triangle."""
+    """Return the angular acceleration of a side of a triangle."""
     return np.asarray(_second(lambda t: np.unwrap(np.angle(side(t))), times))
 
 

@@ -42,7 +42,10 @@ START_FACE, END_FACE = 1, 2  # of an element, across the axis
 
 @dataclass(frozen=True)
 class Pressed(JointDeck):
-    """A joint whose pin is also pressed: elements of the pin, a face, and the pressure, Pa."""
+    """A joint whose pin also has pressure on faces of elements.
+
+    pressed: elements of the pin, the number of their face, and the pressure, Pa.
+    """
 
     pressed: tuple[tuple[Ints, int, float], ...] = ()
 
@@ -56,7 +59,10 @@ class Pressed(JointDeck):
 
 
 def problem(pull: float) -> tuple[tuple[Lug, ...], PinLoads]:
-    """The lugs, and the forces at one instant with an axial one of the ears, N."""
+    """Return the lugs, and the forces at one instant.
+
+    pull: axial force of the ears, N
+    """
     forces = np.zeros((1, 3, 3))
     forces[0, :, 0] = -FORCE / 2, FORCE, -FORCE / 2
     forces[0, :, 2] = -pull, 0.0, pull
@@ -69,7 +75,7 @@ def problem(pull: float) -> tuple[tuple[Lug, ...], PinLoads]:
 
 
 def opinion(pull: float, fineness: Fineness) -> JointOpinion:
-    """What CalculiX finds."""
+    """Return CalculiX's results for a pull of the ears, N."""
     lugs, loads = problem(pull)
     deck, angle = deck_of(lugs, loads, fineness)
     return deck_opinion(PIN, deck, angle, fineness.scale)

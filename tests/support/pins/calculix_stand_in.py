@@ -1,8 +1,9 @@
-"""In CalculiX's place where it is not installed: solves our deck, writes its files.
+"""A replacement of CalculiX for machines without it: solves our deck and writes CalculiX's files.
 
-It shares nothing with `fea` but the deck and the solver of linear equations: shape functions of the
-ten-node tetrahedron in its barycentric coordinates, four integration points, stress extrapolated
-from these to the corners and averaged, middles between them. Only decks of ours are understood.
+It shares nothing with `fea` but the deck and the solver of linear equations. It uses shape
+functions of the ten-node tetrahedron in barycentric coordinates, four integration points, and
+stress extrapolated from these to the corners and averaged, with middle nodes interpolated. It reads
+only decks that the program writes.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ VOIGT = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # of the .frd: xx, yy,
 
 
 def sections(deck: Path) -> dict[str, list[list[str]]]:
-    """The fields of all data lines by the keyword above them."""
+    """Return the fields of all data lines, by the keyword above them."""
     found: dict[str, list[list[str]]] = {}
     for line in deck.read_text().splitlines():
         if line.startswith("*"):
@@ -35,7 +36,9 @@ def sections(deck: Path) -> dict[str, list[list[str]]]:
 
 
 def derivatives(L: Floats) -> Floats:
-    """Of the shape functions by the barycentric coordinates at L (4,): (10, 4)."""
+    """Return the derivatives (10, 4) of the shape functions by the barycentric coordinates at L
+    (4,).
+    """
     out = np.zeros((10, 4))
     out[range(4), range(4)] = 4.0 * L - 1.0
     for k, (a, b) in enumerate(MIDDLES, 4):
@@ -44,8 +47,8 @@ def derivatives(L: Floats) -> Floats:
 
 
 def strains(x: Floats) -> tuple[Floats, Floats]:
-    """Strains (4, M, 6, 30) at the points of elements x (M, 10, 3), shears twice the tensor's, per
-    displacement; and volumes (4, M) of the points.
+    """Return strains (4, M, 6, 30) per displacement at the points of elements x (M, 10, 3), with
+    engineering shears, and the volumes (4, M) of the points.
     """
     all_b, volumes = [], []
     for point in POINTS:
@@ -62,7 +65,9 @@ def strains(x: Floats) -> tuple[Floats, Floats]:
 
 
 def run(folder: Path) -> str:
-    """Solve job.inp in a folder, write job.dat and job.frd; returns what CalculiX would print."""
+    """Solve job.inp in a folder, write job.dat and job.frd, and return what CalculiX
+    would print.
+    """
     read = sections(folder / "job.inp")
     nodes = np.array([[float(c) for c in row[1:]] for row in read["NODE"]])
     elements = np.array([[int(n) - 1 for n in row[1:]] for row in read["ELEMENT"]])
@@ -96,7 +101,9 @@ def run(folder: Path) -> str:
 
 
 def write(folder: Path, u: Floats, stress: Floats) -> None:
-    """Displacement (N, 3) and stress (N, 6) in CalculiX's layout and with its digits."""
+    """Write displacement (N, 3) and stress (N, 6) in CalculiX's layout and with its number of
+    digits.
+    """
     rows = [f"{n:10d} " + "".join(f"{v:14.6E}" for v in row) for n, row in enumerate(u, 1)]
     head = "\n displacements (vx,vy,vz) for set ALL and time  0.1000000E+01\n\n"
     (folder / "job.dat").write_text(head + "\n".join(rows) + "\n")

@@ -16,7 +16,7 @@ MM = 1e-3
 
 
 def write_step(pin: Pin, path: Path) -> Path:
-    """A profile whose lengths are in mm."""
+    """Write a pin, with lengths in mm, as a STEP file."""
     with gmsh_model(pin.name) as gmsh:
         revolve(gmsh, meridian(pin))
         gmsh.write(str(path))
@@ -24,11 +24,11 @@ def write_step(pin: Pin, path: Path) -> Path:
 
 
 def write_mesh(solid: SolidMesh, path: Path, linear: bool = False) -> Path:
-    """A mesh (m) in mm, quadratic or with its corners only."""
+    """Write a mesh (in m) in mm, quadratic or with its corners only."""
     space = Discretisation(solid.mesh)
     points, cells = space.nodes / MM, [("tetra10", space.elements)]
     if linear:
         points, cells = points[: solid.mesh.nvertices], [("tetra", space.elements[:, :4])]
-    kind = "gmsh" if path.suffix == ".msh" else None  # of which meshio knows several
+    kind = "gmsh" if path.suffix == ".msh" else None  # meshio has several formats with this suffix
     meshio.write(path, meshio.Mesh(points, cells), file_format=kind)
     return path

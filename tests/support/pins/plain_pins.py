@@ -1,5 +1,5 @@
-"""Pins that several rooms load, cut and hold: a bar with a band all along it, one in double shear,
-a clevis, a shaft in four-point bending, a pin between two feet.
+"""Pins that tests in several folders load, cut and hold: a bar with a band over its whole length, a
+pin in double shear, a clevis, a shaft in four-point bending, a pin between two feet.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ TWICE = Pin(
 
 
 def double_shear(outer: float, gap: float, middle: float, diameter: float) -> Pin:
-    """Outer lugs A and C, the middle one B; lengths in m."""
+    """Return a pin in double shear with outer lugs A and C and the middle one B; lengths in m."""
     return Pin(
         "P",
         (

@@ -1,10 +1,10 @@
 """CalculiX's contact of a pin with a lug in plane stress: an independent peer of fea.lug.
 
-Nothing of the program's is used but the reading of the outline's dimensions: rays from the bore's
-centre, which reach the outline once, are cut into quadrilaterals with 8 nodes (CPS8), and so is the
-pin, a disc with a hole of 3 % of its radius, on which the force acts. Contact is frictionless,
-surface to surface, by a stiff penalty. A bushing is bonded, or in such contact with its hole, too;
-its interference is a thermal strain.
+Of the program it uses only the material's class, the run of CalculiX and the format of numbers.
+Each ray from the bore's centre crosses the outline once; the lug between the rays is divided into
+quadrilaterals with 8 nodes (CPS8), and so is the pin, a disc with a hole of 3 % of its radius, at
+whose edge the force acts. Contact is frictionless, surface to surface, by a stiff penalty. A
+bushing is bonded to its hole or in such contact with it; its interference is a thermal strain.
 
 Forces, clearance and interference are scaled by SCALE, since CalculiX finds contact on moved nodes.
 """
@@ -27,17 +27,17 @@ from pinbase.arrays import Floats, Ints
 
 SCALE = 0.01
 HUB = 0.03  # of the pin's radius
-GROWTH = 1.5  # of a layer of elements, from the bore on
-FIRST_LAYER = 0.7  # thickness, of an element's length along the bore
-OUTER_LAYERS = 6  # from a circle half-way through the thinnest wall to the outline
+GROWTH = 1.5  # ratio of the thicknesses of two layers of elements, outwards from the bore
+FIRST_LAYER = 0.7  # thickness over an element's length along the bore
+OUTER_LAYERS = 6  # between a circle half-way through the thinnest wall and the outline
 WEAK_SPRING = 1e-7  # of the lug's modulus: holds the pin without contact
-PRESSED_IN = 0.2  # of force over modulus: the pin in the bore, for CalculiX to begin with
+PRESSED_IN = 0.2  # initial overlap of pin and bore, of force over modulus
 # m, a hundredth of an element: CalculiX makes bodies of plane elements, and the shear by which the
 # thickness contracts must be small; with 1 m the hoop stress was off by 10 MPa of 270
 THICKNESS = 1e-5
 SECTORS = 360  # elements around the bore
 STIFFNESS = 1000.0  # of contact, of the modulus over the bore's diameter
-BALANCE = 0.01  # of the force: what the pressure may miss
+BALANCE = 0.01  # largest error of the pressure's resultant, of the force
 SPRING_FIRST = 1_000_000  # number of the first spring element
 
 
@@ -45,11 +45,12 @@ SPRING_FIRST = 1_000_000  # number of the first spring element
 class PlaneEye:
     """A lug and its load; lengths in m.
 
-    shape, width, length, end, head: as of geometry.shape.lug_outline.
+    shape, width, length, end, head: as in geometry.shape.lug_outline.
     radius: of the bore. hole: radius of the hole about a bushing, 0 without one.
-    clearance: of the diameters, of the bore after a bushing is pressed in, on the mean.
+    clearance: of the diameters, at the bore after a bushing is pressed in, averaged around it.
     misfit: interference of the bushing, of the diameters.
-    force: N/m, and its direction from the shank's, rad: 0 pulls on the lug.
+    force: N/m. direction: of the force, rad; 0 pulls on the lug, away from the shank.
+    slips: whether the bushing is in frictionless contact with its hole, not bonded.
     """
 
     shape: Literal["round", "tapered", "square"]
@@ -71,8 +72,9 @@ class PlaneEye:
 
 @dataclass(frozen=True)
 class BoreAnswer:
-    """Around the bore, at angles (P,) rad from the shank: hoop stress and pressure, Pa; and the
-    hoop stress of the lug at the hole of a bushing.
+    """Hoop stress and pressure around the bore, Pa, at angles (P,) rad from the shank.
+
+    hole: the hoop stress of the lug at the hole of a bushing. seconds: of CalculiX's run.
     """
 
     angles: Floats
@@ -84,7 +86,7 @@ class BoreAnswer:
 
 @dataclass(frozen=True)
 class _Mesh:
-    """Elements (M, 8) on nodes (N, 2), layer by layer; `sectors` elements to a layer."""
+    """Elements (M, 8) on nodes (N, 2), layer by layer, with `sectors` elements in each layer."""
 
     nodes: Floats
     elements: Ints
@@ -92,9 +94,9 @@ class _Mesh:
 
 
 def ccx_answer(eye: PlaneEye, sectors: int = SECTORS) -> BoreAnswer:
-    """What CalculiX finds at the bore.
+    """Return CalculiX's stress and pressure at the bore.
 
-    sectors: elements around it.
+    sectors: elements around the bore
 
     Raises: CalculixError.
     """
@@ -106,7 +108,7 @@ def ccx_answer(eye: PlaneEye, sectors: int = SECTORS) -> BoreAnswer:
 
 
 def _lug_mesh(eye: PlaneEye, sectors: int) -> tuple[_Mesh, int]:
-    """The mesh, and the number of layers of a bushing."""
+    """Return the mesh, and the number of layers of a bushing."""
     turn = np.pi * np.arange(2 * sectors) / sectors
     circle = np.stack([np.cos(turn), np.sin(turn)], axis=1)
     outside = _outline(eye, sectors)
@@ -125,7 +127,7 @@ def _lug_mesh(eye: PlaneEye, sectors: int) -> tuple[_Mesh, int]:
 
 
 def _split(mesh: _Mesh, layers: int) -> _Mesh:
-    """The mesh with nodes of its own for the innermost layers."""
+    """Return the mesh with separate nodes for the innermost layers."""
     inside = layers * mesh.sectors
     shared = np.intersect1d(mesh.elements[:inside], mesh.elements[inside:])
     number = np.arange(len(mesh.nodes))
@@ -135,8 +137,8 @@ def _split(mesh: _Mesh, layers: int) -> _Mesh:
 
 
 def _rings(circle: Floats, first: float, last: float, size: float) -> list[Floats]:
-    """Circles and middles between them from a radius on to another, which may be smaller, finest
-    at the first.
+    """Return circles, and those half-way between them, from one radius to another, which may be
+    smaller; the spacing is finest at the first.
     """
     count = 1
     while size * FIRST_LAYER * (GROWTH**count - 1.0) / (GROWTH - 1.0) < abs(last - first):
@@ -148,7 +150,9 @@ def _rings(circle: Floats, first: float, last: float, size: float) -> list[Float
 
 
 def _outline(eye: PlaneEye, sectors: int) -> Floats:
-    """The points (2 S, 2) of the outline on rays, two to a sector, the nearest moved to corners."""
+    """Return the points (2 S, 2) of the outline on rays, two in each sector; the rays nearest to
+    corners are moved to them.
+    """
     turn = np.pi * np.arange(2 * sectors) / sectors
     for x, y in _corners(eye):
         k = 2 * round(math.atan2(y, x) / (2.0 * np.pi / sectors))
@@ -170,7 +174,7 @@ def _corners(eye: PlaneEye) -> list[tuple[float, float]]:
 
 
 def _reach(eye: PlaneEye, turn: float) -> float:
-    """How far the outline is from the bore's centre along a ray."""
+    """Return the distance from the bore's centre to the outline along a ray."""
     c, s = math.cos(turn), abs(math.sin(turn))
     half = 0.5 * eye.width
     if eye.shape == "square":
@@ -181,7 +185,8 @@ def _reach(eye: PlaneEye, turn: float) -> float:
     if eye.shape == "round":
         shank = min(held, _until(half, s)) if c * _until(half, s) > centre else 0.0
         return min(held, max(round_head, shank))
-    # The tangent from the corner (length, half) to the head, whose normal has an angle from x
+    # The tangent from the corner (length, half) to the head; `normal` is the angle of its normal
+    # from x
     along = eye.length - centre
     normal = math.atan2(half, along) + math.acos(R / math.hypot(along, half))
     side = (R + centre * math.cos(normal)) / max(1e-12, c * math.cos(normal) + s * math.sin(normal))
@@ -196,9 +201,10 @@ def _until(distance: float, slope: float) -> float:
 
 
 def _pin_mesh(eye: PlaneEye, sectors: int, shrunk: float) -> _Mesh:
-    """The disc, pressed a little into the loaded side of the bore, where contact is found then.
+    """Return the mesh of the disc, moved a little into the loaded side of the bore, so that
+    CalculiX finds contact there.
 
-    shrunk: by how much the bore's radius is smaller after a bushing has been pressed in.
+    shrunk: reduction of the bore's radius by the pressing in of a bushing
     """
     radius = eye.radius - SCALE * (0.5 * eye.clearance + shrunk)
     turn = np.pi * np.arange(2 * sectors) / sectors
@@ -210,12 +216,12 @@ def _pin_mesh(eye: PlaneEye, sectors: int, shrunk: float) -> _Mesh:
 
 
 def _push(eye: PlaneEye) -> Floats:
-    """The direction of the force on the lug, away from the shank at 0."""
+    """Return the direction of the force on the lug, away from the shank at 0."""
     return -np.array([math.cos(eye.direction), math.sin(eye.direction)])
 
 
 def _polar(points: Floats) -> _Mesh:
-    """The mesh on points (2 L + 1, 2 S, 2), the innermost first."""
+    """Return the mesh on points (2 L + 1, 2 S, 2), the innermost first."""
     rows, columns = points.shape[:2]
     number = np.full((rows, columns), -1)
     used = ~(np.arange(rows)[:, None] % 2 & np.arange(columns) % 2).astype(bool)
@@ -230,7 +236,7 @@ def _polar(points: Floats) -> _Mesh:
 
 
 def _deck(eye: PlaneEye, lug: _Mesh, layers: int, pin: _Mesh | None) -> Iterator[str]:
-    """The deck; without a pin, of the press fit only."""
+    """Yield the lines of the deck; without a pin, those of the press fit only."""
     meshes = [lug] if pin is None else [lug, pin]
     numbers = np.cumsum([0, *(len(m.nodes) for m in meshes)])
     yield "*NODE, NSET=ALL"
@@ -285,12 +291,12 @@ def _deck(eye: PlaneEye, lug: _Mesh, layers: int, pin: _Mesh | None) -> Iterator
 
 
 def stiffness(eye: PlaneEye) -> float:
-    """The stiffness of contact, Pa/m."""
+    """Return the stiffness of contact, Pa/m."""
     return STIFFNESS * eye.lug.youngs_modulus / (2.0 * eye.radius)
 
 
 def _interface(lug: _Mesh, layers: int, hard: float) -> Iterator[str]:
-    """The contact of a bushing with its hole."""
+    """Yield the lines for the contact of a bushing with its hole."""
     last = layers * lug.sectors
     yield "*SURFACE, NAME=OUTSIDE"
     yield from (f"{k + 1}, S2" for k in range(last - lug.sectors, last))
@@ -322,11 +328,11 @@ def _contact(eye: PlaneEye, lug: _Mesh, pin: _Mesh, first: int) -> Iterator[str]
         yield from (f"{SPRING_FIRST + 2 * axis + i}, {k}" for i, k in enumerate(ends))
         yield f"*SPRING, ELSET=WEAK{axis}"
         yield f"{axis}"
-        yield f"{weak:.10e}"  # without a point it would be read as another axis
+        yield f"{weak:.10e}"  # CalculiX would read a number without a decimal point as an axis
 
 
 def _solve(deck: Iterator[str], count: int, quantity: str = "STRESS") -> tuple[Floats, float]:
-    """A quantity at the first nodes (count, K), and the seconds of the run."""
+    """Return a quantity at the first `count` nodes (count, K), and the seconds of the run."""
     with tempfile.TemporaryDirectory(prefix="pinstress-ccx-") as name:
         folder = Path(name)
         (folder / f"{calculix.JOB_NAME}.inp").write_text("\n".join(deck) + "\n", "ascii")
@@ -344,7 +350,7 @@ def _solve(deck: Iterator[str], count: int, quantity: str = "STRESS") -> tuple[F
 
 
 def _shrinkage(eye: PlaneEye, sectors: int) -> float:
-    """By how much the mean radius of the bore shrinks when the bushing is pressed in."""
+    """Return the reduction of the mean radius of the bore when the bushing is pressed in."""
     lug, layers = _lug_mesh(eye, sectors)
     u, _ = _solve(_deck(eye, lug, layers, None), len(lug.nodes), "DISP")
     bore = lug.elements[: lug.sectors, 0]
@@ -367,17 +373,19 @@ def _around(eye: PlaneEye, lug: _Mesh, layers: int, stress: Floats, seconds: flo
 
 
 def _of_lug(eye: PlaneEye, hoop: Floats, radial: Floats) -> Floats:
-    """The hoop stress of the lug at its bushing, from the mean of both, which CalculiX writes."""
+    """Return the hoop stress of the lug at its bushing, from the mean of lug and bushing, which
+    CalculiX writes at their common nodes.
+    """
     assert eye.bushing is not None
     E, nu = eye.lug.youngs_modulus, eye.lug.poisson_ratio
     inner, nu_inner = eye.bushing.youngs_modulus, eye.bushing.poisson_ratio
-    larger = eye.misfit / (2.0 * eye.hole)  # the bushing, if it were free
+    larger = eye.misfit / (2.0 * eye.hole)  # strain by which the bushing is larger when free
     strain = (2.0 * hoop - (nu + nu_inner) * radial + inner * larger) / (E + inner)
     return E * strain + nu * radial
 
 
 def _polar_stress(x: Floats, stress: Floats) -> tuple[Floats, Floats]:
-    """Hoop and radial stress, Pa, of stresses at points."""
+    """Return hoop and radial stress, Pa, of stresses at points."""
     c, s = x.T / np.hypot(*x.T)
     xx, yy, xy = stress[:, 0] / SCALE, stress[:, 1] / SCALE, stress[:, 3] / SCALE
     cross = 2.0 * c * s * xy

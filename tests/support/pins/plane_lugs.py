@@ -1,8 +1,8 @@
-"""Lugs in their plane, and what fea.lug and CalculiX say of the stress at their bores.
+"""Lugs in their plane, with the stresses at their bores by fea.lug and by CalculiX.
 
     python -m tests.support.pins.plane_lugs
 
-writes CalculiX's figures anew.
+stores CalculiX's figures anew.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ STORED = Path(__file__).parents[2] / "validation" / "plane_lugs_ccx.csv"
 HEADER = "eye", "direction_deg", "clearance_mm", "hoop_MPa", "angle_deg", "pressure_MPa", "hole_MPa"
 STEEL = Material("steel", 210e9, 0.3, 7850.0)
 BRONZE = Material("bronze", 110e9, 0.34, 8800.0)
-FORCE = 2.5e6  # N/m: 125 MPa on the bore's diameter
-PRESSED = 0.05  # of the largest pressure: more is beneath the pin
+FORCE = 2.5e6  # N/m: 125 MPa over the bore's diameter
+PRESSED = 0.05  # of the largest pressure; above it a node counts as beneath the pin
 TIGHT = 0.04  # mm of clearance, 0.2 % of the bore
 _ROUND = PlaneEye("round", 0.01, 0.050, 0.050, 0.060, 0.025, FORCE, 0.0, STEEL, STEEL)
 EYES = {
@@ -44,7 +44,7 @@ EYES = {
     "slipping 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE, misfit=3e-5, slips=True),
     "opening 2.5": replace(_ROUND, hole=0.013, bushing=BRONZE, misfit=8e-6, slips=True),
 }
-SLIPPING_SECTORS = 96  # of CalculiX with two contacts, which takes minutes
+SLIPPING_SECTORS = 96  # for CalculiX with two contacts, which takes minutes
 Case = tuple[str, float, float]  # name of the eye, direction of the force, degrees, clearance, mm
 CASES: list[Case] = [
     ("round 2.5", 0.0, 0.0),
@@ -66,7 +66,8 @@ CASES: list[Case] = [
 class BoreFigures:
     """The figures of a lug that are compared, Pa and degrees from the shank.
 
-    hoop: largest at the bore where the pin does not press. angle: of it. pressure: largest.
+    hoop: largest at the bore outside the contact with the pin. angle: where that is. pressure:
+    largest.
     hole: largest hoop stress of the lug about a bushing, NaN without one.
     """
 
@@ -77,17 +78,18 @@ class BoreFigures:
 
 
 def case_of(name: str, direction: float, clearance: float) -> PlaneEye:
-    """The eye of a case."""
+    """Return the lug and its load of a case."""
     turn = math.radians(direction)
     return replace(EYES[name], direction=turn, clearance=1e-3 * clearance)
 
 
 def figures_of_ccx(answer: BoreAnswer) -> BoreFigures:
-    """The figures of CalculiX.
+    """Return the figures from CalculiX's results.
 
-    Where contact ends the hoop stress has a cusp, which nodes miss by some percent. Hoop stress
-    plus pressure has none, and the square of pressure rises from there: both are continued to it
-    from nodes that are not next to it.
+    At the end of contact the hoop stress has a cusp, which is some percent above the values at the
+    nodes. The sum of hoop stress and pressure has no cusp there, and the square of the pressure
+    goes smoothly to zero. The end of contact is found by extrapolation of this square, and the sum
+    there by interpolation, both from nodes that are not next to it.
     """
     M = len(answer.hoop)
     pressed = answer.pressure > PRESSED * answer.pressure.max()
@@ -113,7 +115,7 @@ def figures_of_ccx(answer: BoreAnswer) -> BoreFigures:
 
 
 def figures_of_ours(eye: PlaneEye) -> BoreFigures:
-    """The figures of fea.lug under a pressure that is even through the thickness."""
+    """Return the figures of fea.lug under a pressure that is even through the thickness."""
     make, force = partial(_plane, eye, Memo()), -eye.force * _direction(eye)
     plane = make(around=96)
     if isinstance(plane, SlippingBushing):
@@ -134,7 +136,7 @@ def _direction(eye: PlaneEye) -> Floats:
 
 
 def lug_of(eye: PlaneEye) -> Lug:
-    """The lug of an eye."""
+    """Return the lug in the program's terms."""
     shank = Shank(eye.shape, eye.width, eye.length, eye.end)
     thickness = eye.hole - eye.radius
     bushing = Bushing(thickness, eye.bushing, eye.misfit) if eye.bushing else None
@@ -147,7 +149,7 @@ def _plane(eye: PlaneEye, memo: Memo, around: int) -> LugInPlane | SlippingBushi
 
 
 def stored() -> dict[Case, BoreFigures]:
-    """CalculiX's figures of all cases."""
+    """Return CalculiX's stored figures of all cases."""
     with STORED.open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))[1:]
     out = {}

@@ -1,4 +1,4 @@
-"""Known cuts as recesses."""
+"""The cuts of a pin converted to recesses."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.support.pins.pin_files import MM
 
 
 def as_recesses(pin: CutPin) -> CutPin:
-    """The pin with all that its cuts remove as recesses."""
+    """Return the pin with all that its cuts remove as recesses."""
     drawn = pin.scaled(1.0 / MM)
     with gmsh_model("P") as gmsh:
         body = cut_solid(gmsh, drawn.profile, drawn.cuts)

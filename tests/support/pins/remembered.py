@@ -1,6 +1,6 @@
-"""Runs of studies that share what they have in common: meshes, flexibilities of lugs, unit fields.
+"""Runs of studies that reuse common results: meshes, flexibilities of lugs, unit fields.
 
-A result is that of `pinstress.run` to the last bit, whatever was run before, as
+The result is that of `pinstress.run` to the last bit, whatever was run before, as
 tests/pinstress/analysis/test_engine.py shows.
 """
 
@@ -15,8 +15,8 @@ MEMO = Memo()
 
 
 def remembered(study: Study) -> RunResults:
-    """Return the results of a run; what was solved before in this process is not solved again.
+    """Return the results of a run, reusing what was solved before in this process.
 
-    Not for tests that replace a part of the solution: a row that is remembered does not use it.
+    Not for tests that replace a part of the solution: a remembered row does not use it.
     """
     return Engine(study, memo=MEMO).answer()

@@ -1,4 +1,4 @@
-"""Sections of plain bars and tubes as even grids, whose refinements nest."""
+"""Sections of plain bars and tubes as regular grids, whose refinements are nested."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ from geometry.mesh.section_mesh import MeridianMesh
 def rectangle(
     inner: float, outer: float, length: float, across: int, along: int, band: str = "outer"
 ) -> MeridianMesh:
-    """inner to outer radius and length, m; 2 x `across` x `along` triangles. Surfaces are called
-    start, `band`, end and, where inner > 0, bore.
+    """Return a grid of 2 x `across` x `along` triangles.
+
+    inner, outer: radii, m; length, m. The surfaces are called start, `band`, end and, where inner >
+    0, bore.
     """
     r, z = np.linspace(inner, outer, across + 1), np.linspace(0.0, length, along + 1)
     mesh = MeshTri2.from_mesh(MeshTri.init_tensor(r, z))

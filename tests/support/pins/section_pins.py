@@ -31,5 +31,5 @@ PINS = {
 
 
 def nodes(found: MeridianMesh) -> Floats:
-    """(N, 2)."""
+    """Return the nodes of a mesh, (N, 2)."""
     return found.nodes

@@ -12,8 +12,10 @@ Floats = NDArray[np.float64]
 
 
 def axial_stress(fields: UnitFields, c: Floats, radius: float, angle: float, z: Floats) -> Floats:
-    """Axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a cylinder of
-    `radius` (m), under unit loads c (L,): linear between the nodes of the unrolled surface.
+    """Return the axial stress (Z,) in Pa at z (m) on the surface line at `angle` (rad) of a
+    cylinder of `radius` (m), under unit loads c (L,).
+
+    It is linear between the nodes of the unrolled surface.
     """
     nodes = fields.surface.nodes
     x = fields.space.nodes[nodes]

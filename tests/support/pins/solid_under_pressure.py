@@ -1,5 +1,7 @@
-"""What the published solid problems share: a body under pressure with symmetry planes, through the
-solid model's own parts (a study file knows neither).
+"""A body under pressure with symmetry planes, as the published solid problems need it.
+
+It is built from the solid model's own parts, since a study file has neither such a pressure nor
+such planes.
 """
 
 from __future__ import annotations
@@ -25,21 +27,24 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Solved:
-    """nodes (N, 3), m; displacement (N, 3), m; stress (N, 6), Pa: xx, yy, zz, yz, xz, xy."""
+    """The solution at the nodes.
+
+    nodes: (N, 3), m. displacement: (N, 3), m. stress: (N, 6), Pa: xx, yy, zz, yz, xz, xy.
+    """
 
     nodes: Floats
     displacement: Floats
     stress: Floats
 
     def at(self, *x: float) -> Ints:
-        """Nodes at a point (m), of which there must be one."""
+        """Return the index (1,) of the node at a point (m); fails unless there is exactly one."""
         near = np.flatnonzero(np.linalg.norm(self.nodes - x, axis=1) < 1e-9)
         assert len(near) == 1
         return near
 
 
 def meshed(gmsh: Any, surfaces: dict[str, list[int]]) -> MeshTet2:
-    """The model's tetrahedra, curved and valid."""
+    """Return the mesh of the model in curved tetrahedra, after a check that they are valid."""
     gmsh.model.mesh.generate(3)
     gmsh.model.mesh.setOrder(2)
     jacobian, _ = repair(gmsh)
@@ -54,8 +59,10 @@ def solve(
     planes: Mapping[str, int],
     held: Ints,
 ) -> Solved:
-    """A body under pressure (Pa) on one surface. planes: surfaces, and which component of the
-    displacement is zero on them; held: further components, 3 n + c.
+    """Return the solution of a body under pressure (Pa) on one surface.
+
+    planes: for surfaces, the component of the displacement that is zero on them. held: further
+    components, 3 n + c.
     """
     space = Discretisation(mesh)
     boundary = surface(space)

@@ -1,4 +1,4 @@
-"""Studies of pins that several tests change."""
+"""Studies of pins that several tests modify."""
 
 import tomlkit
 
@@ -14,11 +14,11 @@ def resized_text(
     standard: StandardDiameters | None = None,
     required: float | None = None,
 ) -> str:
-    """A study's text with pins (by name) scaled across their axis."""
+    """Return a study's text with pins (by name) scaled across their axis."""
     return tomlkit.dumps(resized(text, scales, system, standard, required))
 
 
-# Of two pins that harmonic models answer, of two materials.
+# Two pins of different materials, both solved by harmonic models.
 TWO_PINS = """
 title = "Two pins"
 units = "mm-N-s"
@@ -75,7 +75,7 @@ kind = "given"
 forces = { B = [0, 1000], C = [0, 1000] }
 """
 
-# Of the pin of a clevis: its bands and what is between them.
+# The profile of the pin of a clevis: its bands and the segments between them.
 DOUBLE_SHEAR = """[
   { length = 10, diameter = 20, connection = "L" }, { length = 1, diameter = 20, name = "gap" },
   { length = 20, diameter = 20, connection = "M" }, { length = 1, diameter = 20 },

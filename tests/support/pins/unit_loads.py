@@ -1,4 +1,4 @@
-"""Unit loads and their amounts, in short."""
+"""Short functions for unit loads and their amounts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fea.solid.model import UnitFields
 
 
 def forces(*names: str, along: tuple[int, ...] = (0, 1)) -> tuple[Unit, ...]:
-    """A force along each of these axes (x 0, y 1, z 2) on each surface."""
+    """Return a force along each of these axes (x 0, y 1, z 2) on each surface."""
     one = {a: ("pull", 0, 0) if a == 2 else ("force", 1, a) for a in along}
     return tuple(
         (UnitLoad(name, kind, n), phase)  # type: ignore[arg-type]
@@ -20,7 +20,7 @@ def forces(*names: str, along: tuple[int, ...] = (0, 1)) -> tuple[Unit, ...]:
 
 
 def moments(*names: str) -> tuple[Unit, ...]:
-    """A moment about y, -x and z on each surface."""
+    """Return moments about y, -x and z on each surface."""
     return tuple(
         (unit, phase)
         for name in names
@@ -33,7 +33,9 @@ def moments(*names: str) -> tuple[Unit, ...]:
 
 
 def at(fields: UnitFields, **loads: tuple[float, ...]) -> NDArray[np.float64]:
-    """Coefficients (L,) of a force and, if given, a moment by band, three components each."""
+    """Return the coefficients (L,) of a force and, if given, a moment on each band, three
+    components each.
+    """
     six = np.array([[*values, *[0.0] * (6 - len(values))] for values in loads.values()])
     case = PinLoads("case", tuple(loads), six[None, :, :3], six[None, :, 3:])
     found: NDArray[np.float64] = fields.coefficients(case)[0]

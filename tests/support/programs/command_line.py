@@ -1,4 +1,4 @@
-"""The command line on the smallest study: in a process of its own, and in this one."""
+"""The command line on the smallest study, in its own process or in this one."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from typing import NamedTuple
 from pinstress.cli.commands import run_command_line
 
 ONE_PIN = (Path(__file__).parents[3] / "studies" / "one_pin.toml").read_text()
-# a coarse answer is enough to test what surrounds it
+# a coarse result is enough where the rest of the program is tested
 QUICK = ONE_PIN.replace("tolerance = 0.05", "tolerance = 0.3")
 
 
 def pinstress(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """The program as a user starts it."""
+    """Run the program as a user does."""
     return subprocess.run(
         [sys.executable, "-m", "pinstress", *arguments], cwd=cwd, capture_output=True, text=True
     )
 
 
 def run_here(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """What it answers, without the start of a process, which takes longer than a quick run."""
+    """Run the program in this process, as starting another takes longer than a quick run."""
     with chdir(cwd), redirect_stdout(StringIO()) as out, redirect_stderr(StringIO()) as err:
         status = run_command_line(list(arguments))
     return subprocess.CompletedProcess(arguments, status, out.getvalue(), err.getvalue())
 
 
 class Refused(NamedTuple):
-    """What `size` is asked of the quick study with other text, its status and part of what it
-    says.
+    """Arguments of `size` for the quick study, a change to the study's text, the expected exit
+    status, and part of the expected message.
     """
 
     arguments: list[str]
@@ -42,7 +42,7 @@ class Refused(NamedTuple):
 
 
 def sizes_nothing(folder: Path, refused: Refused, *options: str) -> None:
-    """It says so, and no study is written."""
+    """Assert that `size` refuses with the expected message and writes no study."""
     (folder / "study.toml").write_text(
         QUICK.replace(*refused.change) if refused.change[0] else QUICK
     )

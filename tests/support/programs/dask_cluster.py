@@ -1,4 +1,6 @@
-"""A scheduler of dask and workers in processes of their own, as a user starts them, encrypted."""
+"""A scheduler of dask and workers in their own processes, as a user starts them, with
+encryption.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,15 @@ from pinstress.explore.sweep.keys import KeyFiles, write_keys
 from tests.conftest import ROOT
 from tests.support.programs.process_group import started
 
-LIMIT = 300.0  # s of waiting, after which what is waited for will not come
+LIMIT = 300.0  # s of waiting before it is given up
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
 
 def wait_for(condition: Callable[[], object], *running: subprocess.Popen[str]) -> None:
-    """Wait while programs run. Raises: AssertionError where one ends before, or after LIMIT."""
+    """Wait for a condition while programs run.
+
+    Raises: AssertionError where one of them ends before, or after LIMIT.
+    """
     end = time.monotonic() + LIMIT
     while not condition():
         for each in running:
@@ -34,7 +39,10 @@ def wait_for(condition: Callable[[], object], *running: subprocess.Popen[str]) -
 
 @dataclass(frozen=True)
 class DaskCluster:
-    """folder: where its programs begin. address: of the scheduler. keys: None without TLS."""
+    """A running scheduler, to which workers can be added.
+
+    folder: working directory of its programs. address: of the scheduler. keys: None without TLS.
+    """
 
     folder: Path
     address: str
@@ -44,13 +52,13 @@ class DaskCluster:
 
     @property
     def options(self) -> list[str]:
-        """Those by which pinstress uses it."""
+        """Return the command-line options with which pinstress uses this cluster."""
         keys = [] if self.keys is None else ["--tls", str(self.keys.folder)]
         return ["--scheduler", self.address, *keys]
 
     @property
     def connection(self) -> ClusterConnection:
-        """As these options say."""
+        """Return the connection that these options give."""
         connection = connection_to(self.address, self.keys.folder if self.keys else None)
         assert connection is not None
         return connection
@@ -58,7 +66,9 @@ class DaskCluster:
     def worker(
         self, folder: Path | None = None, *options: str, source: Path = ROOT, **variables: str
     ) -> subprocess.Popen[str]:
-        """Start one. folder: where it begins; source: where it finds pinstress; variables: of its
+        """Start a worker.
+
+        folder: its working directory; source: where it finds pinstress; variables: added to its
         environment.
         """
         at = folder or self.folder
@@ -70,9 +80,10 @@ class DaskCluster:
         return self.stack.enter_context(started(command, cwd=at, env=env, **QUIET))
 
     def wait_until(self, condition: str) -> None:
-        """Wait in another process until a condition holds: what dask leaves disturbs other tests.
+        """Wait until a condition holds. This is done in another process, since what dask leaves
+        running would disturb other tests.
 
-        condition: an expression of Python, of a `client` and the `workers` that it is told of.
+        condition: a Python expression of a `client` and the `workers` that its scheduler knows
         """
         asked = (
             "import sys, time\nfrom distributed import Client\n"
@@ -98,14 +109,14 @@ main()
 
 
 def impatient(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """The program, which waits for a worker for 5 s instead of 30."""
+    """Run the program with a wait for workers of 5 s instead of 30."""
     command = [sys.executable, "-c", IMPATIENT, *arguments]
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True)
 
 
 @contextmanager
 def dask_cluster(folder: Path, encrypted: bool = True) -> Iterator[DaskCluster]:
-    """A scheduler, which ends with the block, and its workers too; with keys of its own."""
+    """Yield a scheduler with keys of its own; it and its workers end with the block."""
     folder.mkdir(exist_ok=True)
     file = folder / "scheduler.json"
     file.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Ways in which reading a file may not come to its end; for processes of their own."""
+"""Ways in which reading a file may fail to end, to be run in separate processes."""
 
 from __future__ import annotations
 

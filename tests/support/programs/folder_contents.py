@@ -1,4 +1,4 @@
-"""The bytes of a folder, and damage to them."""
+"""The contents of a folder as bytes, and damage to them."""
 
 from __future__ import annotations
 
@@ -10,6 +10,6 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def flipped(data: bytes) -> bytes:
-    """With one bit in its middle changed."""
+    """Return the data with one bit in its middle changed."""
     at = len(data) // 2
     return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]

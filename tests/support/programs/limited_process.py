@@ -1,7 +1,7 @@
-"""A command in a process of its own with little memory, for a study that may take all of it.
+"""A command in its own process with little memory, for a study that may use all of it.
 
-Forked from a server that has imported what the command needs: a start from nothing takes longer
-than most checks.
+The process is forked from a server that has imported what the command needs, since starting Python
+anew takes longer than most checks.
 """
 
 from __future__ import annotations
@@ -17,18 +17,21 @@ from pinstress.cli import check as check  # imported once, before the forks
 from pinstress.cli.commands import run_command_line
 
 MEMORY = 2_000_000_000  # bytes of address space
-GUARD = 60.0  # s: what hung took longer, or for ever
+GUARD = 60.0  # s; commands that hung took longer, or did not end
 _FORKS = multiprocessing.get_context("forkserver")
 
 
 def start_server() -> None:
-    """To be called before a test begins, which is to leave no process behind; it ends with ours."""
+    """Start the server that forks; it ends with this process.
+
+    To be called before a test begins, as a test may not leave a process behind.
+    """
     _FORKS.set_forkserver_preload([__name__])
     forkserver.ensure_running()
 
 
 def limited(study: Path, command: str = "check") -> tuple[int, str]:
-    """Status and messages."""
+    """Return exit status and messages of a command on a study."""
     messages = study.with_suffix(".messages")
     process = _FORKS.Process(target=_serve, args=(command, study, messages))
     process.start()

@@ -1,4 +1,4 @@
-"""What several workers of a test run need is made by one of them."""
+"""Files that several workers of a test run need and one of them makes."""
 
 from __future__ import annotations
 
@@ -10,17 +10,19 @@ from pathlib import Path
 import pytest
 
 Shipped = Callable[[str], Path]  # the results of a shipped study by its name
-PATIENCE = 900.0  # s, for the worker that makes it
+PATIENCE = 900.0  # s of waiting for the worker that fills the folder
 
 
 def once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
-    """A folder that is filled once in a test run, whichever worker asks first; others wait for it.
+    """Return a folder that is filled once in a test run, by the worker that asks first; others wait
+    for it.
 
-    factory: of temporary folders, which workers of pytest-xdist have beside each other
-    name: of the folder, by which workers know that they ask for the same
+    factory: of temporary folders, which the workers of pytest-xdist have side by side
+    name: of the folder; workers that give the same name get the same folder
     make: fills the folder, which exists
 
-    Raises: RuntimeError where `make` has failed in another worker; here, what `make` raises.
+    Raises: RuntimeError where `make` has failed in another worker; in the worker that calls it,
+    what `make` raises.
     """
     base = factory.getbasetemp()
     common = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base

@@ -1,4 +1,4 @@
-"""What reports.format.packed made of numbers, back."""
+"""Unpack the numbers that reports.format.packed packs."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from pinbase.dimensions import Floats
 from reports.format.template import TEMPLATE_FOLDER
 
-# As the script of the page knows them; another one leaves a view empty.
+# The types that the page's script can unpack; with any other a view stays empty.
 SCRIPT = (TEMPLATE_FOLDER / "packed.js").read_text(encoding="utf-8")
 KINDS = SCRIPT.split("const KINDS = {")[1].split("}")[0]
 
 
 def unpacked(data: dict[str, str]) -> Floats:
-    """As packed.js does it."""
+    """Return the numbers, unpacked as packed.js does it."""
     assert f"{data['kind']}: " in KINDS, data["kind"]
     content = zlib.decompress(b64decode(data["packed"]))
     kind = np.dtype("<" + data["kind"])

@@ -1,4 +1,6 @@
-"""Programs that a test starts: they hear signals, and none outlives the test."""
+"""Programs that a test starts: they receive signals, and none of their processes outlives
+the test.
+"""
 
 from __future__ import annotations
 
@@ -16,8 +18,10 @@ SIGNALS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 
 @contextmanager
 def heard() -> Iterator[None]:
-    """A program that is started here hears the signals that end it, also from a test run that
-    ignores them (by nohup, or in the background of a script): what is ignored would be inherited.
+    """Let a program that is started in this block receive the signals that end it.
+
+    A test run may ignore them (under nohup, or in the background of a script), and the program
+    would inherit that.
     """
     ignored = [each for each in SIGNALS if signal.getsignal(each) == signal.SIG_IGN]
     try:
@@ -29,16 +33,18 @@ def heard() -> Iterator[None]:
             signal.signal(each, signal.SIG_IGN)
 
 
-GRACE_SECONDS = 2.0  # s after the end of a program until none of its processes is left
+GRACE_SECONDS = 2.0  # s within which the processes of a program must end after it
 
 
 @contextmanager
 def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen[str]]:
-    """A program in a session of its own, so with no terminal, that hears signals. Whatever happens
-    within, none of its processes is left afterwards; Python's own tracker of resources ends a
-    moment after the program that started it.
+    """Start a program in its own session, so without a terminal, that receives signals.
 
-    Raises: AssertionError when one was, but for the program itself.
+    Whatever happens within the block, none of its processes is left afterwards. They have
+    GRACE_SECONDS to end, as Python's own tracker of resources ends a moment after the program that
+    started it.
+
+    Raises: AssertionError when a process other than the program itself was left.
     """
     with heard():
         process = subprocess.Popen(command, text=True, start_new_session=True, **options)
@@ -59,7 +65,9 @@ def started(command: Sequence[str], **options: Any) -> Iterator[subprocess.Popen
 
 
 def alive(group: int) -> bool:
-    """Whether a process of that group runs; one that has ended may wait for its parent."""
+    """Return whether a process of that group runs; one that has ended but waits for its parent does
+    not count.
+    """
     for entry in Path("/proc").glob("[0-9]*"):
         try:
             state, _, its = (entry / "stat").read_text().rpartition(")")[2].split()[:3]
@@ -71,8 +79,8 @@ def alive(group: int) -> bool:
 
 
 def children() -> set[int]:
-    """The processes that this one has started and that are still there, also as they wait for it to
-    hear of their end.
+    """Return the processes that this one has started and that still exist, including ended ones
+    that it has not yet waited for.
     """
     found = set()
     for tasks in Path("/proc/self/task").glob("*/children"):

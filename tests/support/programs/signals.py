@@ -9,7 +9,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def signals_heard() -> Iterator[None]:
-    """In this process, which may be a job in the background that ignores them; as before after."""
+    """Receive signals in this process, which may be a background job that ignores them; afterwards
+    the handlers are as before.
+    """
     before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
     try:
         for each in before:

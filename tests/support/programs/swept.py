@@ -1,4 +1,4 @@
-"""The shipped pin, with a [vary]."""
+"""The shipped study of one pin, with a [vary] section."""
 
 from __future__ import annotations
 
@@ -12,17 +12,20 @@ SHAPES = f'"{DIAMETER}" = {{ from = "1.5 in", to = "4.5 in" }}'
 
 
 def varied(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str = ONE_PIN) -> str:
-    """A study's text with [vary]: what comes before its parameters, and these."""
+    """Return a study's text with [vary].
+
+    parameters: the lines of [vary.parameters]. head: the lines before these.
+    """
     return f"{text}\n[vary]\n{head}\n\n[vary.parameters]\n{parameters}\n"
 
 
 def swept(parameters: str, head: str = 'sample = "sobol"\ncount = 4', text: str = ONE_PIN) -> Study:
-    """Such a study."""
+    """Return the study of such a text."""
     return study_from(varied(parameters, head, text))
 
 
 DEADLY = 2
 
 
-# Takes long enough to be interrupted; `whole_sweep` of tests/conftest.py is its table.
+# A sweep long enough to be interrupted; `whole_sweep` in tests/conftest.py is its table.
 LONG_SWEEP = varied(SHAPES, 'sample = "sobol"\ncount = 48')

@@ -1,4 +1,4 @@
-"""A command on a terminal of 80 columns, as one who types it sees it."""
+"""A command on a terminal of 80 columns, as its user sees it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from pathlib import Path
 
 
 def on_terminal(command: Sequence[str], folder: Path) -> tuple[int, str]:
-    """The exit status of a command and all that it prints on its standard output.
+    """Return the exit status of a command and all that it prints on its standard output.
 
-    folder: for its errors. Where there are no terminals, its output goes to a pipe.
+    folder: where the file "errors" gets its standard error. On systems without such terminals its
+    output goes to a pipe.
     """
     environment = {**os.environ, "COLUMNS": "80", "TERM": "dumb", "NO_COLOR": "1"}
     with (folder / "errors").open("w") as errors:
@@ -27,7 +28,7 @@ def on_terminal(command: Sequence[str], folder: Path) -> tuple[int, str]:
 
 
 def _read(terminal: int) -> bytes:
-    """The next bytes of a terminal; none once nobody writes to it."""
+    """Return the next bytes of a terminal, or none when no process writes to it any more."""
     try:
         return os.read(terminal, 65536)
     except OSError:

@@ -1,4 +1,4 @@
-"""What a browser reads of an animation: tags, attributes, scripts and text."""
+"""A parser of an animation's page: tags, attributes, scripts and text."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class Reader(HTMLParser):
-    """Collects tags with their attributes, and what stands in scripts and elsewhere."""
+    """Collects tags with their attributes, the contents of scripts, and the other text."""
 
     def __init__(self, text: str) -> None:
         super().__init__()

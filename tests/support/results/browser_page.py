@@ -1,4 +1,4 @@
-"""What tests ask of a page in a browser."""
+"""Operations on a report's page in a browser."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-SCREEN = 900  # pixels of height
-WAIT = 30.0  # s, for what a slow machine draws in software
+SCREEN = 900  # height, pixels
+WAIT = 30.0  # s, enough for a slow machine that renders in software
 COLOURS = """
 const c = arguments[0], { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
 return new Set(new Uint32Array(data.buffer)).size;
@@ -25,7 +25,10 @@ def opened(browser: Any, folder: Path) -> None:
 
 @contextmanager
 def screen(browser: Any, width: int, height: int = SCREEN, **media: str) -> Iterator[None]:
-    """A screen of so many pixels, below 500 of width a phone's, in a `shade` and on a `media`."""
+    """Set a screen of this size in pixels; one narrower than 500 is a phone's.
+
+    media: `shade` is the preferred colour scheme, `media` the type of medium
+    """
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     features = [{"name": "prefers-color-scheme", "value": media.get("shade", "light")}]
@@ -40,20 +43,22 @@ def screen(browser: Any, width: int, height: int = SCREEN, **media: str) -> Iter
 
 
 def unfold(browser: Any) -> None:
-    """Open all that folds."""
+    """Open all parts that can be folded."""
     script = "for (const part of document.querySelectorAll('details.fold')) part.open = true;"
     browser.execute_script(script)
 
 
 def wait(browser: Any, ready: Callable[[], Any]) -> Any:
-    """What `ready` gives once it is true."""
+    """Return what `ready` returns, once it is true."""
     from selenium.webdriver.support.ui import WebDriverWait
 
     return WebDriverWait(browser, WAIT).until(lambda _: ready())
 
 
 def views(browser: Any, pin: str) -> list[Any]:
-    """A pin's views, by its heading as written: rendering waits for the layout of a long page."""
+    """Return a pin's views, by its heading; all parts are unfolded first, as rendering waits for
+    the layout of a long page.
+    """
     unfold(browser)
 
     def headed() -> list[Any]:
@@ -65,7 +70,7 @@ def views(browser: Any, pin: str) -> list[Any]:
 
 
 def view(browser: Any, pin: str) -> Any:
-    """A pin's first view, scrolled to and drawn."""
+    """Return a pin's first view, after scrolling to it and waiting until it is drawn."""
     root = views(browser, pin)[0]
     browser.execute_script("arguments[0].scrollIntoView();", root)
     wait(browser, lambda: part(root, "told").text)
@@ -82,7 +87,7 @@ def canvas(root: Any) -> Any:
 
 
 def colours(browser: Any, root: Any) -> int:
-    """How many distinct colours the view shows."""
+    """Return the number of distinct colours that the view shows."""
     return int(browser.execute_script(COLOURS, canvas(root)))
 
 
@@ -91,7 +96,7 @@ def pixels(browser: Any, root: Any) -> str:
 
 
 def maximum(root: Any) -> float:
-    """The maximum that is shown."""
+    """Return the maximum that the view shows."""
     return float(part(root, "told").get_attribute("data-maximum"))
 
 
@@ -102,7 +107,9 @@ def slide(browser: Any, slider: Any, value: int) -> None:
 
 
 def errors(browser: Any) -> list[str]:
-    """What the console complains of on this page; a page before it may send its own late."""
+    """Return the errors of this page on the console; the page before it may log errors late, which
+    are left out.
+    """
     folder = browser.current_url.partition("#")[0].rpartition("/")[0]
     severe = (e["message"] for e in browser.get_log("browser") if e["level"] == "SEVERE")
     return [text for text in severe if text.startswith(folder) or not text.startswith("file:")]

@@ -17,7 +17,9 @@ CRANK, COUPLER, ROCKER, BASE = 1.0, 3.5, 3.0, 4.0
 
 
 def four_bar(count: int = 181) -> Results:
-    """A crank that turns once in 3 s, with made-up forces; C by the cosine rule."""
+    """Return the results of a crank that turns once in 3 s, with made-up forces; C is found by the
+    cosine rule.
+    """
     time = np.linspace(0.0, 3.0, count)
     turn = 2.0 * np.pi * time / 3.0
     a, d = np.zeros((count, 2)), np.tile([BASE, 0.0], (count, 1))
@@ -47,7 +49,9 @@ def four_bar(count: int = 181) -> Results:
 
 
 def linkage(case: str, time: Floats | None, joints: tuple[str, ...], at: Floats) -> LinkageMotion:
-    """A chain of bars from joint to joint, at (T, J, 2); the first and the last are ground."""
+    """Return the motion of a chain of bars between joints at (T, J, 2), the first and last of which
+    are on the ground.
+    """
     bodies = ("crank", "coupler", "rocker", *(f"link {k}" for k in range(4, len(joints))))
     count, shape = len(at), (len(at), len(joints) - 1)
     centre = 0.5 * (at[:, 1:] + at[:, :-1])
@@ -83,7 +87,7 @@ def linkage(case: str, time: Floats | None, joints: tuple[str, ...], at: Floats)
 
 
 def chain(joints: int, count: int) -> Results:
-    """Many bars in a row, every joint on its own circle."""
+    """Return the results of many bars in a row, each joint moving on its own circle."""
     time = np.linspace(0.0, 40.0, count)
     j = np.arange(joints)
     phase = 0.3 * time[:, None] + j

@@ -1,4 +1,4 @@
-"""A page as a reader of its text and its addresses sees it, and a name that is a script."""
+"""The text and the addresses of a page, and a name that contains a script."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EVIL = '<script>alert("1")</script>&\'='
 
 
 class Reader(HTMLParser):
-    """Collects tags, addresses, anchors, pages within and the text that is shown."""
+    """Collects tags, addresses, anchors, embedded pages and the text that is shown."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,4 +1,6 @@
-"""Made-up rows of every verdict, with singular zones and checks by hand; a pin's bare surface."""
+"""Made-up rows of every verdict, with singular zones and hand checks; the surface of a
+stepped pin.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,9 @@ SHIGLEY = "Budynas & Nisbett, Shigley's Mechanical Engineering Design, 8-12"
 
 
 def zones(turned: float = 0.0, governs: bool = True) -> tuple[SingularZone, ...]:
-    """A corner, the edge of a clamp and that of a load; turned (rad) about the axis."""
+    """Return a corner, the edge of a clamp and that of a load, rotated by `turned` (rad) about the
+    axis.
+    """
     c, s = np.cos(turned), np.sin(turned)
 
     def at(r: float, z: float) -> tuple[float, float, float]:
@@ -41,7 +45,7 @@ def zones(turned: float = 0.0, governs: bool = True) -> tuple[SingularZone, ...]
 
 
 def checks(time: float | None = None) -> tuple[Margin, ...]:
-    """Against yield, in the units of the made-up run."""
+    """Return hand checks against yield, in the units of the made-up run."""
     made = (
         ("single shear, mean", "gap", 1234.5678901, 68127.3, "V / A"),
         ("bending", "drag brace A", 0.0, 118000.0, "M c / I"),
@@ -54,7 +58,7 @@ def checks(time: float | None = None) -> tuple[Margin, ...]:
 
 
 def row(case: str, verdict: str, factor: float, meets: bool | None, **more: object) -> PinResult:
-    """Pin A with a yield stress of 118,000 psi."""
+    """Return a row of pin A with a yield stress of 118,000 psi."""
     largest = 118000.0 / factor
     base = next(p for p in make_results().pins if p.pin == "A")
     made = with_values(
@@ -67,7 +71,7 @@ def row(case: str, verdict: str, factor: float, meets: bool | None, **more: obje
 
 
 def judged() -> Results:
-    """Rows of pin A with all verdicts; 1.5 is required."""
+    """Return results with rows of pin A with all verdicts; the required safety factor is 1.5."""
     rows = (
         row("fine", "converged", 3.0, True, singular_at=zones(0.3, False), margins=checks()),
         row("sharp", "singular", 2.5, None, singular_at=zones(), margins=checks()),
@@ -83,7 +87,9 @@ def judged() -> Results:
 
 
 def tube(strength: float | None = 118000.0) -> Field:
-    """The surface of a stepped pin revolved in 24 sectors, closed at its ends by rings."""
+    """Return a field on the surface of a stepped pin revolved in 24 sectors, closed at its ends by
+    rings.
+    """
     profile = np.array(
         [(0.05, 0.0), (0.75, 0.0), (0.75, 0.25), (0.5, 0.25), (0.5, 1.5), (0.5, 2.5), (0.05, 2.5)]
     )

@@ -1,4 +1,4 @@
-"""A table of designs as a sweep writes it, with invented stresses."""
+"""A table of designs as a sweep writes it, with made-up stresses."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ def made_up_designs(
     failing: float = 0.02,
     study: str = "made up",
 ) -> pa.Table:
-    """So many designs with so many parameters, from a fixed seed; failing: which part has none.
+    """Return a table of `count` designs, drawn from a fixed seed.
 
-    The stress falls with the third power of the first parameter, the mass grows with its square.
+    The stress falls with the third power of the first parameter, the mass grows with the squares of
+    all.
+    failing: fraction of the designs without results
     """
     random = np.random.default_rng(1)
     keys = [f"pin.B.profile[{k + 1}].diameter" for k in range(parameters)]
@@ -71,7 +73,7 @@ def table_of(
     study: str = "made up",
     required: float | None = REQUIRED,
 ) -> pa.Table:
-    """Rows as a table with the units and the metadata of a sweep."""
+    """Return rows as a table with the units and the metadata of a sweep."""
     texts = ("pin", "case", "verdict", "reason", "code")
     outcome = ["outcome"] if rows and all("outcome" in row for row in rows) else []
     order = ["design", "pin", "case", *keys, *RESULTS, *outcome, "reason", "code"]

@@ -1,4 +1,4 @@
-"""A made-up pin in contact with three lugs, for all tests of what is drawn and written of one."""
+"""A made-up pin in contact with three lugs, for all tests of its tables and drawings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RANGE = (1100.0, 1900.0)
 
 
 def make_joint(over: bool = True) -> JointResult:
-    """Two rings a band; the outer lugs also press on the other side."""
+    """Return a contact with two rings in each band; the left lug also presses on the other side."""
     starts = {"left": 0.0, "middle": 1.25, "right": 3.5}
     bands = tuple(
         BandContact(
@@ -48,14 +48,14 @@ def joint_range() -> JointRange:
 
 
 def in_lugs(results: Results, joint: JointResult, **changes: object) -> Results:
-    """The first pin of some results with this contact, and other changes."""
+    """Return the results with this contact, and other changes, in the first pin's row."""
     changes |= {"error_parts": {"mesh": 5.0, "time": 0.0, "cells": 1.0}}
     first = with_values(results.pins[0], joint=joint, **changes)
     return replace(results, pins=(first, *results.pins[1:]))
 
 
 def surface_in(case: str, pressure: tuple[Any, Any] = (None, None)) -> Surface:
-    """A meridian of three points and one unit load."""
+    """Return a meridian of three points with one unit load."""
     one = SurfaceCase(
         case, None, 0, np.ones((1, 1, 2)), np.ones(1), np.zeros(3, bool), np.ones(3), *pressure
     )

@@ -1,4 +1,4 @@
-"""A made-up run: nine pins, a motion, a landing and both checks."""
+"""A made-up run: nine pins, a motion, a landing, and the checks of a beam and of the motion."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def static() -> ReactionTable:
 
 
 def four_bar(case: str, times: np.ndarray | None) -> LinkageMotion:
-    """A parallelogram whose crank swings from 60 to 120 degrees, in closed form.
+    """Return a parallelogram whose crank swings from 60 to 120 degrees, in closed form.
 
     Its coupler does not turn, and a roller slides along the ground under joint B.
     """
@@ -224,7 +224,7 @@ def motion_check(times: np.ndarray) -> MotionCheck:
 
 
 def make_field() -> Field:
-    """One quadratic tetrahedron with its middle nodes on the straight edges."""
+    """Return one quadratic tetrahedron with its middle nodes on the straight edges."""
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 3]])
     edges = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
     points = np.vstack([corners, [0.5 * (corners[a] + corners[b]) for a, b in edges]])

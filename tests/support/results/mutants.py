@@ -1,4 +1,4 @@
-"""Damaged and hostile copies of the files of a results folder, drawn by a seed."""
+"""Damaged and hostile copies of the files of a results folder, drawn from a seed."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ ODD: list[Any] = [
 
 
 def damaged_bytes(content: bytes, draw: random.Random) -> bytes:
-    """Bytes exchanged, cut off, put in, taken away, or all of them other ones."""
+    """Return the bytes with some replaced, cut off, inserted or removed, or all of them
+    replaced.
+    """
     at, other = draw.randrange(len(content)), draw.randrange(len(content))
     low, high = sorted((at, other))
     few = bytes(draw.randrange(256) for _ in range(draw.choice((1, 1, 4, 64))))
@@ -39,7 +41,7 @@ def damaged_bytes(content: bytes, draw: random.Random) -> bytes:
 
 
 def damaged_json(content: bytes, draw: random.Random) -> bytes:
-    """One value or key of a JSON text exchanged by something odd, or all of it."""
+    """Return a JSON text with a value or key replaced by an odd one, or all of it replaced."""
     if draw.random() < 0.25:
         return damaged_bytes(content, draw)
     if draw.random() < 0.1:
@@ -78,7 +80,7 @@ TEXTS = [
 
 
 def _places(node: Any) -> Iterator[tuple[Any, Any]]:
-    """Every value of a JSON text by what holds it."""
+    """Yield every value of a JSON text as its container and its key or index."""
     if isinstance(node, dict | list):
         for key in list(node) if isinstance(node, dict) else range(len(node)):
             yield node, key
@@ -86,7 +88,7 @@ def _places(node: Any) -> Iterator[tuple[Any, Any]]:
 
 
 def damaged_vtu(content: bytes, draw: random.Random) -> bytes:
-    """An attribute, an array or bytes of a VTU file exchanged by something odd."""
+    """Return a VTU file with an attribute, an array or bytes replaced by something odd."""
     text = content.decode()
     what = draw.randrange(4)
     if what == 0:
@@ -114,7 +116,10 @@ def _other_array(text: str, draw: random.Random) -> str:
 
 
 def with_block(content: bytes, stated: int | None = None) -> str:
-    """An array of a VTU file of one block. stated: its size as its header has it."""
+    """Return an array of a VTU file, of one block.
+
+    stated: its size in the header, if not the actual size
+    """
     packed, size = zlib.compress(content), len(content) if stated is None else stated
     header = b"".join(n.to_bytes(8, "little") for n in (1, size, 0, len(packed)))
     return b64encode(header).decode() + b64encode(packed).decode()
@@ -128,7 +133,7 @@ def _random_block(draw: random.Random) -> bytes:
 
 
 def repacked(page: str, name: str, change: Callable[[bytes], bytes]) -> str:
-    """A report.html with other content of one of its packed parts."""
+    """Return a report.html with one of its packed parts changed."""
     found = search(rf'<script type="text/plain" id="{name}">([\w+/=]+)</script>', page)
     assert found is not None
     new = change(zlib.decompress(b64decode(found[1])))
@@ -137,7 +142,7 @@ def repacked(page: str, name: str, change: Callable[[bytes], bytes]) -> str:
 
 
 def damaged_page(content: bytes, draw: random.Random) -> bytes:
-    """Of a report.html its bytes, or what it has packed."""
+    """Return a report.html with its bytes damaged, or one of its packed parts."""
     if draw.random() < 0.2:
         return damaged_bytes(content, draw)
     name = draw.choice(("plots", "paper"))

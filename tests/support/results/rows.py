@@ -1,4 +1,4 @@
-"""Rows of results with any values, also such as no run has together."""
+"""Rows of results with any values, including combinations that no run has."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ JUDGEMENT_NAMES = {f.name: f.name for f in fields(Judgement)} | {
 
 
 def with_values(row: PinResult, **values: Any) -> PinResult:
-    """The row with other values of its fields, or of the properties that the maximum or its
-    judgement gives.
+    """Return the row with other values of its fields, or of the properties taken from its maximum
+    or judgement.
     """
     if "time" in values:
         time = values.pop("time")
@@ -40,13 +40,13 @@ def with_values(row: PinResult, **values: Any) -> PinResult:
 
 
 def row_with(pin: str, case: str, **values: Any) -> PinResult:
-    """A row with the values of its other fields and properties."""
+    """Return a row with these values of its fields and properties."""
     return with_values(PinResult(Maximum(pin, case, "solid", "converged", "")), **values)
 
 
 def with_landing(results: Results, *ranges: LandingRange) -> Results:
-    """The results with the ranges of a landing in the rows of their pins and cases, which come
-    last if there are none.
+    """Return the results with the ranges of a landing in the rows of their pins and cases; a row
+    that does not exist is appended.
     """
     rows = {(p.pin, p.case): p for p in results.pins}
     for r in ranges:

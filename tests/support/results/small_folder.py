@@ -1,4 +1,4 @@
-"""A results folder as a run writes it, of one pin in one case, made without solving anything."""
+"""A results folder as a run writes it, of one pin in one case, made without a solution."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SECRET = b"what is outside of the folder"
 
 
 def small_folder(folder: Path) -> Path:
-    """Made there, with its tables, page and field, listed as ours."""
+    """Make the folder with its tables, page and field, listed in its manifest, and return it."""
     results = replace(
         make_results(),
         pins=(pin("B", "landing"),),

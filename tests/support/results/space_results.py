@@ -25,13 +25,17 @@ STAY_END = (150.0, 1000.0, -50.0)
 
 
 def turned(point: Floats, axis: Floats, angle: Floats) -> Floats:
-    """A point (3,) turned about an axis through the origin by angles (T,): Rodrigues, (T, 3)."""
+    """Return a point (3,) turned about an axis through the origin by angles (T,), by Rodrigues'
+    formula, (T, 3).
+    """
     c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
     return np.asarray(c * point + s * np.cross(axis, point) + (1.0 - c) * (axis @ point) * axis)
 
 
 def landing_gear(count: int = 61) -> Results:
-    """A leg that folds about a skewed axis in 6 s, on a side stay that shortens, with its wheel."""
+    """Return a leg that folds about a skewed axis in 6 s, on a side stay that shortens, with its
+    wheel.
+    """
     time = np.linspace(0.0, 6.0, count)
     angle = 0.5 * FOLD_ANGLE * (1.0 - np.cos(np.pi * time / 6.0))
     at = {name: turned(np.array(p), FOLD_AXIS, angle) for name, p in AS_DRAWN.items()}
@@ -85,9 +89,10 @@ def landing_gear(count: int = 61) -> Results:
 
 
 def rssr(count: int = 73) -> Results:
-    """A crank that turns about z and a rocker that swings about x, joined by a rod with two balls.
+    """Return a crank that turns about z and a rocker that swings about x, joined by a rod with two
+    balls.
 
-    The rocker's angle from the rod's length: A cos + B sin = C.
+    With the rod's length known, the rocker's angle follows from A cos + B sin = C.
     """
     crank, rod, rocker, base = 40.0, 140.0, 90.0, np.array([60.0, 110.0, 20.0])
     time = np.linspace(0.0, 2.0, count)

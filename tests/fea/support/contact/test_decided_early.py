@@ -68,10 +68,10 @@ def test_a_surface_that_is_surely_below_the_sections_needs_no_finer_mesh() -> No
     here = seen(first, second, fewest=2)
     high = here.range[1]
     for section, done in ((1.001 * high, True), (0.999 * high, False)):
-        requirement = Requirement(1e-4, elsewhere={"c": section})
+        requirement = Requirement(1e-4, section_stress={"c": section})
         assert accurate_enough(requirement, STEEL, here) is done
         assert ("surface-below-sections" in met(requirement, STEEL, here).codes) is done
-    assert not accurate_enough(Requirement(1e-4, elsewhere={"d": 2.0 * high}), STEEL, here)
+    assert not accurate_enough(Requirement(1e-4, section_stress={"d": 2.0 * high}), STEEL, here)
 
 
 def test_ends_that_change_from_mesh_to_mesh_widen_the_interval() -> None:
