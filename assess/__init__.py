@@ -1,5 +1,6 @@
-"""Assess: what an engineer signs, from the stress of a pin.
+"""Assessment of pins and lugs, which gives the margins that an engineer signs.
 
-Strength by hand and by clause, fatigue, limit load, derivatives of a maximum, and second opinions
-by other programs. SI units. Imports `fea`, `geometry` and `pinbase`.
+The package has hand checks and code clauses of strength, fatigue, limit loads, derivatives of a
+maximum, and second opinions by other programs. Units are SI. It imports `fea`, `geometry` and
+`pinbase`.
 """

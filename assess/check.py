@@ -1,11 +1,11 @@
-"""The face of a check of strength, and how a check is written as one function.
+"""The interface of a strength check, and the decorator that makes one from a function.
 
     @check("mean shear", "Shigley, 8-12", kind="hand", takes="section forces")
     def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
         stress = s.forces.mean_shear()
         return text.at_levels(s, stress.stress, WorstPlace(stress.at, stress.z, stress.time), ...)
 
-A check is one file here or in assess.strength, its line in assess.checks, and its test.
+A check is one file in assess.strength or assess.clauses, its line in assess.checks, and its test.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from fea.core.pin_loads import PinLoads
 from geometry import Band
 from pinbase.arrays import Floats, first_largest
 
-# By the number of a place: the work of the allowable there, and the dimension that would just pass,
-# by the utilisation.
+# From the utilisation of a place to the dimension that would just pass.
 Passing = Callable[[float], WorkQuantity | None]
+# From the number of a place to the work of the allowable there and its `Passing`.
 Shown = Callable[[int], tuple[Work, Passing]]
 Takes = Literal["results", "loads", "statics", "section forces"]
 Scope = Literal["case", "pin"]
@@ -32,14 +32,16 @@ Rupture = Literal["shear", "bearing", "ultimate"]
 
 
 class Check(Protocol):
-    """One check, in one file. It solves nothing: what is dear (limit load, histories, contact) is
-    in the situation, and cached with the row.
+    """One strength check, in one file. A check solves nothing: all expensive results (limit load,
+    stress histories, contact) are in the situation and cached with the row.
 
-    method: as printed. clause: where it is printed. kind: of what the check is made. scope: whether
-    it is made of each case, or of all cases of a pin (fatigue).
-    takes: what must be known of the pin for the check to be made at all: "results" of the model,
-    which any body has; a profile and the "loads" of its links; the "statics", which are the loads
-    on all bands; or "section forces", once for each way of finding these.
+    method: the name of the check as it is printed. clause: where the method is published. kind:
+    what the check is based on (`Kind`). scope: whether the check is made for each load case, or
+    once for all load cases of a pin (fatigue).
+    takes: what must be known of the pin before the check can be made: "results" of the model, which
+    any body has; "loads", a profile and the loads of its links; "statics", the loads on all bands;
+    or "section forces". A check that takes section forces is made once with each way of finding
+    them.
     """
 
     @property
@@ -54,15 +56,16 @@ class Check(Protocol):
     def takes(self) -> Takes: ...
 
     def __call__(self, s: Situation) -> Sequence[Margin]:
-        """A margin for each place and level. What the study lacks is `Margin.needs` (its key);
-        nothing is raised. Empty: the check does not apply.
+        """Return a margin for each place and level, or an empty list if the check does not apply.
+
+        A key that the study lacks is reported in `Margin.needs`; no error is raised.
         """
         ...
 
 
 @dataclass(frozen=True)
 class WorstPlace:
-    """The place and time of the largest demand: a band or segment, z there (m), and time (s)."""
+    """The place and time of the largest demand: the band or segment by name, z (m), time (s)."""
 
     at: str = ""
     z: float | None = None
@@ -70,17 +73,18 @@ class WorstPlace:
 
     @staticmethod
     def at_band(band: Band, loads: PinLoads, instant: int) -> WorstPlace:
-        """The middle of a band, at an instant of loads."""
+        """Return the middle of a band at an instant, which is given by its number in the loads."""
         times = loads.times
         return WorstPlace(band.name, band.middle, None if times is None else float(times[instant]))
 
 
 @dataclass(frozen=True)
 class CheckText:
-    """The text that is printed of a check, and the margins that carry it.
+    """The printed text of a check. Its methods make the margins that carry this text.
 
-    level: at which the check is made, where `at_levels` does not make it at both. dimension: of its
-    demand. scatter: of the method against tests. omits: what it does not cover.
+    level: the level at which the check is made; `at_levels` sets the level of its margins itself.
+    dimension: of the demand. scatter: the scatter of the method against tests. omits: what the
+    check does not cover.
     """
 
     method: str
@@ -102,7 +106,7 @@ class CheckText:
         work: tuple[Work, ...] = (),
         passing: WorkQuantity | None = None,
     ) -> Margin:
-        """The margin of a demand at a place; arguments as in `Margin`."""
+        """Return the margin of a demand at a place; arguments as in `Margin`."""
         return Margin(
             self.method, self.clause, self.kind, self.level, s.factors.at(self.level), demand,
             allowable, self.dimension, place.at, place.z, place.time, material, basis, work=work,
@@ -121,11 +125,13 @@ class CheckText:
         basis: str = "",
         shown: tuple[Work, Passing] | None = None,
     ) -> list[Margin]:
-        """One stress, Pa, against yield at limit load and against rupture at ultimate load.
+        """Return the margins of one stress, Pa: against yield at limit load, and against rupture at
+        ultimate load.
 
-        strength: that the stress reaches at yield, Pa. ruptures: the strength of the material that
-        it reaches at rupture; None where it is no measure of that. shown: the work of the stress,
-        and what would pass.
+        strength: the stress at which the part yields, Pa; None where the material has no such
+        value. ruptures: which strength of the material the stress reaches at rupture; None where
+        this stress does not measure rupture, and only yield is checked. shown: the work of the
+        stress, and the dimension that would just pass.
         """
         allowed: list[tuple[Level, str, float | None]] = [("limit", "yield", strength)]
         if ruptures is not None:
@@ -150,8 +156,10 @@ class CheckText:
         basis: str = "",
         shown: Shown | None = None,
     ) -> Margin:
-        """The worst of demands (T, S) with allowables (S,) at S places, called `at`, at the
-        instants of the loads. shown: the work of the allowable at a place, by its number.
+        """Return the margin with the highest utilisation among S places and T instants.
+
+        demand: (T, S), at the instants of the loads. allowable: (S,). at: the names of the places.
+        shown: the work of the allowable at each place, by the number of the place.
         """
         return self._worst(s, s.loads.times, demand, allowable, at, basis, shown)
 
@@ -179,8 +187,10 @@ class CheckText:
         note: str = "",
         shown: Shown | None = None,
     ) -> Margin:
-        """The worst of demands (T, S) with allowables (S,) at the stations of the section forces,
-        or at one place that stands for all. shown: as in `worst`.
+        """Return the margin with the highest utilisation among the stations of the section forces.
+
+        demand: (T, S) with allowable (S,); S is the number of stations, or 1 for a check of the
+        whole pin. note: is added to the basis. shown: as in `worst`.
         """
         forces = s.forces
         at = forces.labels if demand.shape[1] == len(forces.labels) else ("",)
@@ -188,7 +198,7 @@ class CheckText:
         return self._worst(s, forces.times, demand, allowable, at, basis, shown)
 
     def lacks(self, s: Situation, *needs: str) -> Margin:
-        """The margin of the check where it is not made, for want of something."""
+        """Return the margin of a skipped check. needs: what is missing, as keys of the study."""
         factor = s.factors.at(self.level)
         margin = skipped(self.method, self.clause, self.kind, self.level, factor, ", ".join(needs))
         return replace(margin, omits=self.omits)
@@ -203,14 +213,14 @@ Make = Callable[[CheckText, Situation], Sequence[Margin]]
 
 @dataclass(frozen=True, kw_only=True)
 class FunctionCheck(CheckText):
-    """A check that is a function of its own text and of a situation. It is a `Check`."""
+    """A `Check` that is made by a function of its text and of a situation."""
 
     takes: Takes
     scope: Scope
     make: Make
 
     def __call__(self, s: Situation) -> Sequence[Margin]:
-        """The margins in a situation, as `Check`."""
+        """Return the margins in a situation, as `Check` describes."""
         return self.make(self, s)
 
 
@@ -226,7 +236,7 @@ def check(
     scatter: str = "",
     omits: str = "",
 ) -> Callable[[Make], FunctionCheck]:
-    """A decorator that makes a check of a function; arguments as in `Check` and `CheckText`."""
+    """Return a decorator that makes a function a check; arguments as in `Check` and `CheckText`."""
     return lambda make: FunctionCheck(
         method, clause, kind, level, dimension, scatter, omits, takes=takes, scope=scope, make=make
     )

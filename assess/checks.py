@@ -1,7 +1,7 @@
-"""All checks of strength, and the margins that they give.
+"""All strength checks, and the margins that they give.
 
-A new check is a file with a `assess.check.Check`, its line in CHECKS, and its test: tables, page
-and terminal then have it. The order is that of margins.csv.
+A new check is a file with an `assess.check.Check`, its line in CHECKS, and its test. All outputs
+then include the check. The order of CHECKS is the order of margins.csv.
 """
 
 from __future__ import annotations
@@ -119,11 +119,12 @@ SETS: Mapping[Code, tuple[Check, ...]] = MappingProxyType(
 
 
 def margins_of(s: Situation, scope: Scope = "case") -> list[Margin]:
-    """All margins of a situation, at every place and level, in the order of the checks.
+    """Return all margins of a situation, at every place and level, in the order of the checks.
 
-    A check that several chosen codes have is made once, with the largest of their factors.
+    A check that belongs to several of the chosen codes is made once, with the largest of their
+    fitting factors.
 
-    scope: of the checks that are made.
+    scope: only checks of this scope are made.
 
     Raises: as `with_section_forces`.
     """
@@ -132,7 +133,8 @@ def margins_of(s: Situation, scope: Scope = "case") -> list[Margin]:
         chosen[required_lug_checks] = None
     made = [check for check in chosen if check.scope == scope and _can_be_made(check, s)]
     every = list(with_section_forces(s)) if any(map(_takes_forces, made)) else []
-    # Neighbours that take section forces are made together, once with each kind of these.
+    # Consecutive checks that take section forces form a group; the whole group is made once with
+    # each kind of section forces.
     return [
         margin
         for repeated, together in groupby(made, _takes_forces)
@@ -145,7 +147,7 @@ def _takes_forces(check: Check) -> bool:
 
 
 def _can_be_made(check: Check, s: Situation) -> bool:
-    """Whether the situation has what a check takes."""
+    """Whether the situation has the data that a check takes."""
     if check.takes == "results":
         return True
     return s.profile is not None and (s.complete or check.takes == "loads")
@@ -164,8 +166,11 @@ def _together(checks: list[Check], situations: Iterable[Situation]) -> Iterator[
 
 
 def _with_code(check: Check, s: Situation) -> Iterable[Margin]:
-    """The margins of a check with the factors of the codes that have it, and their names; of a
-    check that none has, but the study requires, with those of all.
+    """Return the margins of a check with the largest fitting factor of the codes to which it
+    belongs, and with the names of these codes.
+
+    A check that the study requires although no chosen code has it takes the largest fitting factor
+    of all chosen codes.
     """
     if s.codes == DEFAULT_CODES:
         return check(s)

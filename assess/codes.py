@@ -1,4 +1,4 @@
-"""The codes by which a study lets pins and lugs be checked."""
+"""The design codes by which a study can have its pins and lugs checked."""
 
 from __future__ import annotations
 
@@ -22,5 +22,5 @@ class PartialFactors:
 
 RECOMMENDED = PartialFactors()
 DEFAULT_CODES: tuple[Code, ...] = ("general",)
-# That a code demands where the study states none: 14 CFR 25.625(a)
+# The fitting factor that a code demands where the study states none: 14 CFR 25.625(a)
 FITTING_FACTORS: Mapping[Code, float] = MappingProxyType({"aircraft": 1.15})

@@ -1,9 +1,10 @@
-"""How a pin's factor of safety grows with its diameters, by the law of its section.
+"""The growth of a pin's safety factor with its diameters, estimated from its section.
 
-A factor grows with the cube of the diameter where bending governs, with its square where shear or
-an axial force does; what lies beneath contact, where pressure is force over diameter and length,
-with little more than the diameter itself. A pin that is large beside its length is pressed as a
-disc, with a stress of about its mean pressure, whatever bends it.
+Where bending governs, the factor grows with the cube of the diameter; where shear or an axial force
+governs, with its square. Beneath a contact surface, where pressure is force over diameter and
+length, the factor grows only a little faster than the diameter itself. A pin whose diameter is
+large compared with its length is compressed like a disc: its stress is about the mean pressure,
+however much it is bent.
 """
 
 from __future__ import annotations
@@ -16,39 +17,44 @@ from geometry import PinLike
 from geometry.shape.features import outer_radius
 
 BENDING_EXPONENT, SHEAR_EXPONENT = 3.0, 2.0
-# Larger than that of a mean pressure, 1, since peaks at the lugs' edges even out as the pin becomes
-# stiffer: 1.4 to 1.8 between one and three times the diameters of studies/landing_gear.toml
+# Larger than the exponent 1 of a mean pressure, since the peaks at the lugs' edges even out as the
+# pin becomes stiffer: 1.4 to 1.8 between one and three times the diameters of
+# studies/landing_gear.toml
 BEARING_EXPONENT = 1.5
-# Of the mean pressure on a band: the largest stress of a pin with large diameters; 0.9 to 1.4 at
-# three and four times those of studies/landing_gear.toml and clevis.toml (benchmarks estimates)
+# Largest stress of a pin with large diameters, relative to the mean pressure on a band: 0.9 to 1.4
+# at three and four times the diameters of studies/landing_gear.toml and clevis.toml (benchmarks
+# estimates)
 DISC_STRESS = 1.2
-SAME_STRESS = 0.01  # relative
-STEP_DISTANCE = 1e-3  # of the length, from a section to both sides
+SAME_STRESS = 0.01  # relative difference up to which two factors are of the same stress
+STEP_DISTANCE = 1e-3  # distance to both sides of a section, relative to the length of the pin
 
 
 def section_exponent(pin: PinLike, section: SectionPlace | None) -> float:
-    """Return the exponent with which a factor grows with the diameters, by the part of bending in
-    the square of the stress of a section; that of bending where there is no section.
+    """Return the exponent with which a factor grows with the diameters.
+
+    The exponent is interpolated between bending and shear by the share of bending in the square of
+    the section's stress. It is that of bending where the section or its stress is unknown.
     """
     profile = pin.profile
     if section is None or profile is None or not section.max_von_mises:
         return BENDING_EXPONENT
-    # at a step, of the thinner side
+    # At a step of the diameter the thinner side counts.
     sides = section.z - STEP_DISTANCE * profile.length, section.z + STEP_DISTANCE * profile.length
     radius = min((r for z in sides if (r := outer_radius(profile, z))), default=0.0)
     if not radius:
         return BENDING_EXPONENT
-    # of a solid section: a bore makes bending a larger part
+    # Bending stress of a solid section; with a bore, the true share of bending is larger.
     bending = 4.0 * section.bending_moment / (math.pi * radius**3)
     part = min((bending / section.max_von_mises) ** 2, 1.0)
     return part * BENDING_EXPONENT + (1.0 - part) * SHEAR_EXPONENT
 
 
 def beneath_exponent(factor: float, beneath: float, exponent: float) -> float:
-    """Return the exponent of a factor by the stress beneath contact.
+    """Return the exponent of the factor against the stress beneath contact.
 
-    factor, exponent: of the row. Where both factors agree to SAME_STRESS they are of one stress,
-    such as in a fillet near a lug, which follows the section.
+    factor, exponent: of the row. beneath: the factor beneath contact. If both factors agree within
+    SAME_STRESS they belong to the same stress, for example in a fillet near a lug, and that stress
+    follows the section.
     """
     same = math.isclose(factor, beneath, rel_tol=SAME_STRESS)
     return exponent if same else BEARING_EXPONENT
@@ -56,10 +62,11 @@ def beneath_exponent(factor: float, beneath: float, exponent: float) -> float:
 
 @dataclass(frozen=True)
 class DiameterLaw:
-    """The factors of a pin, which grow with the scale of all its diameters.
+    """The safety factors of a pin as functions of one scale on all its diameters.
 
-    factor: by surface and section, which grows with `exponent`. beneath: by the stress beneath
-    contact, inf without any. disc: by the pressure of lugs, as on a disc, inf without any.
+    factor: of surface and section; it grows with `exponent`. beneath: of the stress beneath
+    contact, inf without contact. disc: of the lugs' pressure on the pin as a disc, inf without
+    pressure.
     """
 
     factor: float
@@ -69,7 +76,7 @@ class DiameterLaw:
 
     @property
     def _laws(self) -> tuple[tuple[float, float], ...]:
-        """Each factor with its exponent."""
+        """The pairs of a factor and its exponent."""
         below = beneath_exponent(self.factor, self.beneath, self.exponent)
         return (self.factor, self.exponent), (self.beneath, below), (self.disc, 1.0)
 
@@ -82,15 +89,16 @@ class DiameterLaw:
         return max(float((required / factor) ** (1.0 / e)) for factor, e in self._laws)
 
     def times(self, share: float) -> DiameterLaw:
-        """Return the law with all factors times a share."""
+        """Return the law with all factors multiplied by a share."""
         return replace(
             self, factor=share * self.factor, beneath=share * self.beneath, disc=share * self.disc
         )
 
 
 def disc_factor(strength: float, pressure: float, factor: float) -> float:
-    """Return the factor of a pin as a disc under a mean pressure, in the unit of the strength.
+    """Return the safety factor of a pin that is compressed like a disc; inf without pressure.
 
-    factor: the lowest by its solution, which is no larger than the disc's.
+    strength, pressure: yield strength and mean pressure, in the same unit. factor: the lowest
+    factor of the pin's solution, which the result is never below.
     """
     return max(strength / (DISC_STRESS * pressure), factor) if pressure > 0.0 else math.inf

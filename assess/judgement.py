@@ -7,23 +7,25 @@ from dataclasses import dataclass
 from fea.core.peak import Maximum, meets_limit
 
 SAFE, FAILS, NOT_DECIDED = "safe", "fails", "not decided"
-DEPENDS = "depends"  # safe as described, but not within a range that the study leaves open
-BELOW_YIELD, YIELDS = "below yield", "yields"  # where no factor is required
+DEPENDS = "depends"  # safe as described, but not over a whole range that the study leaves open
+BELOW_YIELD, YIELDS = "below yield", "yields"  # outcomes where no safety factor is required
 OUTCOME_ORDER = {FAILS: 0, YIELDS: 0, NOT_DECIDED: 1, DEPENDS: 2, SAFE: 3, BELOW_YIELD: 3}
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """A maximum against the yield strength and the required factor.
+    """A maximum stress compared with the yield strength and the required safety factor.
 
-    It is made once, in SI: factors and decisions cannot depend on the units of a report.
+    The judgement is made once, in SI, so that factors and decisions cannot depend on the units of a
+    report.
 
-    safety_factor: yield strength over the maximum, None without either.
-    interval: of that factor over the interval of the maximum, if it has one; the upper end is None
-    where no stress may be left.
-    required: factor of safety, None where none is required, and the pin only must not yield.
-    decided: whether the maximum with its error stays below what is permitted; None where that is
-    open.
+    safety_factor: yield strength over the maximum stress; None if either is missing.
+    interval: the range of the safety factor over the interval of the maximum, if it has one. The
+    upper end is None where the stress may be zero.
+    required: the required safety factor. None if none is required: then the pin must only not
+    yield.
+    decided: whether the maximum with its error stays below the permitted stress; None where this
+    could not be determined.
     """
 
     safety_factor: float | None = None
@@ -38,7 +40,7 @@ class Judgement:
 
     @property
     def outcome(self) -> str:
-        """The outcome for a pin that is exactly as its study describes it."""
+        """The outcome for a pin that is exactly as the study describes it."""
         if self.decided is None:
             return NOT_DECIDED
         if self.required is None:
@@ -47,11 +49,11 @@ class Judgement:
 
 
 def against_yield(peak: Maximum, strength: float | None, required: float | None) -> Judgement:
-    """Return the judgement of a maximum.
+    """Return the judgement of a maximum stress.
 
-    strength: yield strength, Pa, None for a material without one; of a pin with a hardened surface
-    that where the maximum is counts instead.
-    required: factor of safety.
+    strength: yield strength, Pa, None for a material without one. In a pin with a hardened surface
+    the yield strength at the place of the maximum replaces it.
+    required: the required safety factor.
     """
     strength = peak.yield_strength(strength)
     if strength is None:

@@ -14,34 +14,36 @@ from pinbase.keys import key_part
 
 Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
 Level = Literal["limit", "ultimate"]
-RATIO_DIMENSION = "1"  # the dimension of a demand that is a ratio already: an interaction, a damage
-JOINT_MODEL_BASIS = "joint model"  # as the basis of section forces
+RATIO_DIMENSION = "1"  # of a demand that is already a ratio, such as an interaction or a damage
+JOINT_MODEL_BASIS = "joint model"  # how the basis of such section forces begins
 COMPARISON_SUFFIX = "for comparison"
 # Methods of margins that stand for several checks that could not be made.
 FORMULA_CHECKS, CLAMPED_LUG_PREFIX = "checks by formula", "lug of "
-OMITS_CUTS = "Not covered: the cuts of the pin."  # by a check by formula
-CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"  # instead of it
+OMITS_CUTS = "Not covered: the cuts of the pin."  # stated by a check by formula
+CUTS_NEEDED = "the stress of sections and bands with the cuts of the pin, by hand"  # if skipped
 
 
 @dataclass(frozen=True)
 class Margin:
-    """The margin of one check at one place and one level, at the instant when it is worst.
+    """The margin of one check at one place and one level, at the instant when the margin is lowest.
 
-    method: the check, in words. clause: where it is printed. kind: of what the check is made; hand
-    checks are listed beside the model's result, too. level: the loads to which `factor` leads, by
-    which the demand is multiplied.
-    demand: under the loads of the study, and allowable, both of a `dimension` ("stress", "force",
-    "moment" or "1"); None where they are not known.
-    at: a band or segment, empty for the whole pin. z: there, m. time: s, None without a motion.
-    material: whose strength the allowable is, by name. basis: how the demand was found. formula: of
-    the demand, for people.
-    needs: what is missing where the check was not made. governs: whether the margin counts; if not,
-    it is there for comparison.
-    code: the sets of checks to which it belongs (assess.checks), where the study chooses some.
+    method: the check, in words. clause: where the method is published. kind: what the check is
+    based on; hand checks are also listed next to the result of the model. level: the load level;
+    `factor` multiplies the demand to reach it.
+    demand, allowable: the demand under the loads of the study and what is allowed, both of the
+    given `dimension` ("stress", "force", "moment" or "1"); None where unknown.
+    at: the name of a band or segment, empty for the whole pin. z: its position, m. time: s, None
+    without a motion.
+    material: the name of the material whose strength is the allowable. basis: how the demand was
+    found. formula: the formula of the demand, human-readable.
+    needs: what is missing, if the check was not made. governs: whether the margin counts; if not,
+    it is listed for comparison only.
+    code: the sets of checks to which the check belongs (assess.checks), if the study chooses sets.
     work: the formulas of the allowable with their numbers. passing: the dimension that would just
-    pass, by its key. scatter: of the method against tests, where it was measured. omits: what the
-    check does not cover.
-    over_joint: the largest demand over the uncertain properties of the joint, over this one.
+    pass, with its key as the symbol. scatter: the scatter of the method against tests, where it
+    was measured. omits: what the check does not cover.
+    over_joint: the ratio of the largest demand over the uncertain properties of the joint to this
+    demand.
     """
 
     method: str
@@ -69,13 +71,13 @@ class Margin:
 
     @property
     def shown(self) -> str:
-        """The method, and the joint model where it takes the section forces of that."""
+        """The name of the method, marked where the section forces come from the joint model."""
         named = JOINT_MODEL_BASIS in self.method or not self.basis.startswith(JOINT_MODEL_BASIS)
         return self.method if named else f"{self.method} ({JOINT_MODEL_BASIS})"
 
     @property
     def omits_cuts(self) -> bool:
-        """Whether it is of the pin without its cuts, which may be where it would be least."""
+        """Whether the margin ignores the cuts of the pin, where it might be lower."""
         return OMITS_CUTS in self.omits
 
     @property
@@ -100,19 +102,21 @@ class Margin:
 
     @property
     def used(self) -> float:
-        """The utilisation, for sorting: below all others where the check was not made."""
+        """The utilisation for sorting; -1, below all others, where the check was not made."""
         used = self.utilisation
         return -1.0 if used is None else used
 
     @property
     def listed_by_hand(self) -> bool:
-        """Whether it is a row of the hand checks: these compare a stress with yield."""
+        """Whether the margin is a row in the table of hand checks: a hand check at limit level that
+        was made.
+        """
         return self.kind == "hand" and self.level == "limit" and self.demand is not None
 
 
 @dataclass(frozen=True)
 class PinMargin:
-    """A margin of a pin in a case; case: empty for one over several cases, a spectrum."""
+    """A margin of a pin in a load case; case: empty for a margin over a spectrum of cases."""
 
     pin: str
     case: str
@@ -125,21 +129,23 @@ class PinMargin:
 
 
 def for_comparison(margin: Margin) -> Margin:
-    """The same margin for comparison only."""
+    """Return the margin marked as one for comparison only, which does not govern."""
     return replace(margin, method=f"{margin.method}, {COMPARISON_SUFFIX}", governs=False)
 
 
 def skipped(
     method: str, clause: str, kind: Kind, level: Level, factor: float, needs: str
 ) -> Margin:
-    """The margin of a check that was not made, and what it needs."""
+    """Return the margin of a check that was not made. needs: what is missing."""
     return Margin(method, clause, kind, level, factor, None, None, needs=needs)
 
 
 def worst_places(margins: Iterable[Margin]) -> list[Margin]:
-    """The worst place of every check, at each level and for each basis of its demand, in the order
-    in which the checks come first. Of checks that were not made only what they need is left; the
-    formula of a demand joins its basis.
+    """Return the margin at the worst place for each check, level and basis of the demand, in the
+    order in which the checks first appear.
+
+    A margin with `needs` loses its place, demand and allowable. In all others the formula of the
+    demand is appended to the basis.
     """
     worst: dict[tuple[str, Level, str, str], Margin] = {}
     for margin in margins:
@@ -162,7 +168,7 @@ def _without_place(margin: Margin) -> Margin:
 
 
 def strength_key(material: str, which: str) -> str:
-    """The key of a study that would give a strength."""
+    """Return the key of the study that states a strength of a material."""
     return material_key(material, f"{which}_strength")
 
 

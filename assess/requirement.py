@@ -1,8 +1,8 @@
 """Requirements on pins as a study states them: a check at a level, and the factor it must reach.
 
-A factor is the allowable over the demand under the loads of the study. The level says what must
-not happen under `factor` times these loads: no yielding at limit and proof load, no failure at
-ultimate load.
+A factor is the allowable over the demand under the loads of the study. The level states what the
+pin must survive under `factor` times these loads: no yielding at limit and proof load, no failure
+at ultimate load.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LEVELS_OF_CHECK: Mapping[RequiredCheck, tuple[RequiredLevel, ...]] = MappingProx
         "fatigue": ("limit",),
     }
 )
-TO_BE_RUN = " to be run"  # the end of what a requirement needs that the run leaves out
+TO_BE_RUN = " to be run"  # ends the text of `needs` where the run leaves out the pin or the case
 REQUIRED_LEVELS: tuple[RequiredLevel, ...] = "limit", "proof", "ultimate"
 REQUIRED_CHECKS = tuple(LEVELS_OF_CHECK)  # in the order of tables
 
@@ -35,9 +35,9 @@ REQUIRED_CHECKS = tuple(LEVELS_OF_CHECK)  # in the order of tables
 class StatedRequirement:
     """A requirement of a study on one pin in one case.
 
-    case: empty for a check over several cases, fatigue. factor: allowable over demand under the
-    loads of the study; of fatigue, the life over the required one.
-    needs: why there is no row that could meet it ("pin E to be run"), empty if there is one.
+    case: empty for fatigue, which is checked over several cases. factor: allowable over demand
+    under the loads of the study; for fatigue, the life over the required life.
+    needs: what is missing if no row can meet the requirement ("pin E to be run"), else empty.
     """
 
     pin: str

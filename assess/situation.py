@@ -1,4 +1,4 @@
-"""What a check is made of: a pin with its lugs and loads in a case, and what was solved of it."""
+"""The data that a check reads: a pin with its lugs and loads in a case, and its solved results."""
 
 from __future__ import annotations
 
@@ -35,21 +35,23 @@ from pinbase.arrays import Floats, first_largest
 if TYPE_CHECKING:
     from fea.lug.in_joint import ShankAngle  # with the elements of lugs
 
-MAX_LEFT_COUPLE = 0.01  # couple that balance leaves, of the largest force times the pin's length
-SUPPORT_COUNT = 2  # lugs of a structure whose forces follow from equilibrium
+MAX_LEFT_COUPLE = 0.01  # unbalanced couple, relative to the largest force times the pin's length
+SUPPORT_COUNT = 2  # number of structural lugs whose forces follow from equilibrium
 NO_LOADS = PinLoads("", (), np.zeros((1, 0, 3)))
 
 
 ForcesKind = Literal["even", "concentrated", "joint"]
-# The property of a section by which a nominal stress is the moment, or the shear force, over it.
+# The section property that divides the moment or the shear force to give a nominal stress.
 Resists = Literal["area", "axis_area", "modulus"]
 
 
 @dataclass(frozen=True)
 class LoadFactors:
-    """Factors on the loads of a study: at limit load (against yield), at ultimate load (against
-    rupture and collapse), and of fittings, which multiplies both. fitting_stated: whether the study
-    states the last, which then replaces that of a code.
+    """Factors on the loads of a study: at limit load (against yield) and at ultimate load (against
+    rupture and collapse), and the fitting factor, which multiplies both.
+
+    fitting_stated: whether the study states the fitting factor. A stated factor replaces the one
+    that a code demands.
 
     Source: 14 CFR 25.301 and 25.303 (limit and ultimate loads), 25.625 (fitting factor).
     """
@@ -60,14 +62,14 @@ class LoadFactors:
     fitting_stated: bool = False
 
     def of_code(self, code: Code) -> LoadFactors:
-        """The factors with the fitting factor of a code where the study states none."""
+        """Return the factors with the fitting factor of a code, unless the study states one."""
         demanded = FITTING_FACTORS.get(code)
         if demanded is None or self.fitting_stated:
             return self
         return replace(self, fitting=demanded)
 
     def at(self, level: Level) -> float:
-        """The factor on demands at a level."""
+        """Return the factor on demands at a level."""
         return (self.limit if level == "limit" else self.ultimate) * self.fitting
 
 
@@ -86,13 +88,15 @@ class NominalStress:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Shear force and bending moment along a pin, by one way of finding them.
+    """The section forces along a pin, as found by one method.
 
-    z: of S stations, (S,) m. sections, labels: the round section and the name of the segment at
-    each. shear, moment: at T instants, (T, S) N and N m; axial, torque: the size of the axial force
-    and of the torque, likewise. times: (T,) s, None without a motion.
-    basis: where the forces come from. kind: the same for programs. exact: finds the largest nominal
-    stress between the stations, too, where the diagrams are polynomials.
+    z: (S,) positions of the stations, m. sections, labels: the round section and the name of the
+    segment at each station. shear, moment: (T, S) shear force, N, and bending moment, N m, at T
+    instants. axial, torque: (T, S) magnitudes of the axial force, N, and of the torque, N m.
+    times: (T,) s, None without a motion.
+    basis: the method that gave the forces, in words. kind: the same method as a key. exact: a
+    function that also finds the largest nominal stress between the stations, where the shear and
+    moment diagrams are polynomials; None otherwise.
     """
 
     z: Floats
@@ -108,19 +112,19 @@ class SectionForces:
     exact: Callable[[Resists], NominalStress] | None = None
 
     def of_sections(self, name: str) -> Floats:
-        """A property of the sections, (S,)."""
+        """Return a property of the sections by its name, (S,)."""
         return np.array([getattr(section, name) for section in self.sections])
 
     def mean_shear(self) -> NominalStress:
-        """The largest mean shear stress V / A."""
+        """Return the largest mean shear stress V / A."""
         return self._largest("area")
 
     def neutral_axis_shear(self) -> NominalStress:
-        """The largest shear stress at the neutral axis, V Q / (I t)."""
+        """Return the largest shear stress at the neutral axis, V Q / (I t)."""
         return self._largest("axis_area")
 
     def bending(self) -> NominalStress:
-        """The largest elastic bending stress M c / I."""
+        """Return the largest elastic bending stress M c / I."""
         return self._largest("modulus")
 
     def _largest(self, resists: Resists) -> NominalStress:
@@ -136,11 +140,11 @@ class SectionForces:
 
 @dataclass(frozen=True)
 class SolvedRow:
-    """The solution of a pin in a case, as far as checks read it.
+    """The part of a pin's solution in a load case that checks read.
 
-    peak: the maximum von Mises stress. limit_load: None where it was not requested. required: the
-    safety factor against yield that the study asks for. joint_growth: the most by which the stress
-    or a force across the pin grows over the range of the joint.
+    peak: the maximum von Mises stress. limit_load: None if it was not requested. required: the
+    safety factor against yield that the study requires. joint_growth: the largest ratio by which
+    the stress, or a transverse force on the pin, grows over the range of the joint.
     """
 
     peak: Maximum
@@ -151,11 +155,11 @@ class SolvedRow:
 
 @dataclass(frozen=True)
 class PinFatigue:
-    """The damage of a pin under the study's spectrum, over all cases.
+    """The fatigue damage of a pin under the study's spectrum, over all load cases.
 
-    points: its critical points, the worst first. life: that the study requires, in `unit`s of the
-    spectrum; None where it requires none. method: of the equivalent stress. needs: what is missing
-    where damage is not decided.
+    points: the critical points, the worst first. life: the life that the study requires, in `unit`s
+    of the spectrum; None if it requires none. method: the method of the equivalent stress. needs:
+    what is missing, where the damage is not decided.
     """
 
     points: tuple[PointFatigue, ...]
@@ -167,31 +171,34 @@ class PinFatigue:
 
 @dataclass(frozen=True)
 class Situation:
-    """A pin in a case, or in all cases of a spectrum: all that a check may read.
+    """A pin in a load case, or in all cases of a spectrum: all data that a check may read.
 
-    profile: the pin with a band for each lug of a structure; None for a body from a file. material:
-    of the pin. loads: on all bands that carry, in balance or with `clamps`; if not `complete`, only
-    on those of links, as the forces of a structure's lugs are not known. lugs: those that the study
-    gives; sized: those of them whose outer diameter it gives. replaceable: whether the pin is meant
-    to be replaced.
+    profile: the pin with a band for each lug of the structure; None for a body from a file.
+    material: of the pin. loads: the loads on all loaded bands, in equilibrium or reacted by
+    `clamps`. complete: false where the forces of the structure's lugs are unknown; `loads` are then
+    those of the links only. lugs: the lugs that the study describes. sized: those whose outer
+    diameter it states. replaceable: whether the pin is meant to be replaced.
 
-    joint: section forces by the joint model, if one supports the pin. even_governs: whether checks
-    of bending and shear take the even loads of the formulas all the same. simple: the loads by the
-    statics of formulas, where those of the joint differ. over_joint: the largest section forces of
-    the joint model over the uncertain properties of the joint, over its own. lug_growth: the same
-    of the forces on lugs that share what statics does not decide.
+    joint: the section forces of the joint model, if the pin is supported by one. even_governs:
+    whether bending and shear checks take the evenly distributed loads of the formulas even so.
+    simple: the loads by the statics of the formulas, where those of the joint differ. over_joint:
+    the ratio of the largest section forces over the uncertain properties of the joint to those of
+    the joint as stated. lug_growth: the same ratio of the force on each lug, by connection, for
+    lugs that share forces which statics does not determine.
 
-    section_forces: with which the check is made now (assess.checks). chosen: whether these are the
-    ones that the study chooses; others are beside them. governs: whether margins with them count.
+    section_forces: the section forces with which the check is made now (assess.checks). chosen:
+    whether these are the section forces that the study chooses; the others are for comparison.
+    governs: whether margins with them count.
 
-    row: what was solved of the pin in this case; fatigue: over all cases.
+    row: the results of the pin in this load case. fatigue: the results over all load cases.
 
-    codes: the sets of checks that the study chooses (assess.checks). required: the checks of
-    bearing and shear, with their levels, that it requires of the pin under any code.
-    design_factor: N_d of ASME BTH-1. partial: factors of EN 1993-1-8. aisc: the way of design by
-    ANSI/AISC 360. bending_factor: the modulus of rupture of the pin over its ultimate strength.
-    lug_factors: efficiency factors of lugs, by connection. lug_stresses: of those whose shank is
-    known; shank_angles: the directions of these shanks, by connection.
+    codes: the sets of checks that the study chooses (assess.checks). required: the bearing and
+    shear checks, with their levels, that the study requires of the pin under any code.
+    design_factor: N_d of ASME BTH-1. partial: the partial factors of EN 1993-1-8. aisc: the design
+    method of ANSI/AISC 360. bending_factor: the ratio of the modulus of rupture of the pin to its
+    ultimate strength. lug_factors: the efficiency factors of lugs, by connection. lug_stresses:
+    the stresses of lugs whose shank is known. lug_collapses: the collapse loads of lugs.
+    shank_angles: the directions of the known shanks, by connection.
     """
 
     profile: Pin | None
@@ -225,13 +232,14 @@ class Situation:
     shank_angles: Mapping[str, ShankAngle] = field(default_factory=dict)
 
     def factors_of(self, connection: str) -> LugFactors:
-        """The efficiency factors of a lug."""
+        """Return the efficiency factors of a lug; all of them None where the study gives none."""
         return self.lug_factors.get(connection, LugFactors())
 
     @property
     def pin(self) -> Pin:
-        """The profile. Raises: ArgumentError for a body from a file, of which only checks that take
-        results can be made.
+        """The profile of the pin.
+
+        Raises: ArgumentError for a body from a file, which only checks that take results can check.
         """
         if self.profile is None:
             raise ArgumentError("a body from a file has no profile", "no-profile")
@@ -245,25 +253,26 @@ class Situation:
         return self.section_forces
 
     def most_used(self, used: Floats) -> tuple[int, ...]:
-        """The instant and the section of the largest use (T, S).
+        """Return the numbers of the instant and the section with the largest utilisation.
 
-        Of sections used alike, as on both sides of a face of a link, that in the link goes first.
+        used: (T, S) utilisations. Among equal values, as on both sides of the face of a link, the
+        section inside the link is preferred.
         """
         return first_largest(used, np.isin(self.forces.labels, self.loads.surfaces))
 
     @property
     def by_formula(self) -> PinLoads:
-        """The loads of which formulas make section forces."""
+        """The loads from which the formulas compute section forces."""
         return self.loads if self.simple is None else self.simple
 
     @property
     def on_bands(self) -> PinLoads:
-        """The loads with which the pressure and the double shear of bands are checked."""
+        """The loads for the checks of bearing pressure and double shear on the bands."""
         return self.by_formula if self.even_governs else self.loads
 
     @cached_property
     def balanced(self) -> bool:
-        """Whether these loads leave no couple across the pin that its bands would have to share."""
+        """Whether the loads `by_formula` leave no transverse couple for the bands to share."""
         if self.clamps:
             return True
         left = out_of_balance(self.pin, self.by_formula)
@@ -271,31 +280,37 @@ class Situation:
 
     @property
     def joint_governs(self) -> bool:
-        """Whether section forces of the joint govern: also beside even loads that are requested,
-        where these leave out the couples of lugs.
+        """Whether the section forces of the joint govern.
+
+        They do even where even loads are requested, if these leave an unbalanced couple, since even
+        loads omit the couples of the lugs.
         """
         return self.joint is not None and not (self.even_governs and self.balanced)
 
     @property
     def across(self) -> Floats:
-        """The size of the force across the pin on each of C bands, (T, C) N."""
+        """The magnitude of the transverse force on each of C bands, (T, C) N."""
         return np.asarray(np.hypot(self.loads.forces[..., 0], self.loads.forces[..., 1]))
 
     @property
     def loaded_across(self) -> bool:
-        """Whether a force, a moment or the weight of the pin acts across it."""
+        """Whether a force, a moment or the weight of the pin acts transverse to its axis."""
         loads = self.loads
         return any(bool(x[..., :2].any()) for x in (loads.forces, loads.moments, loads.body))
 
     def lug(self, band: str) -> Lug | None:
-        """The lug in which a band sits, if it was given."""
+        """Return the lug in which a band sits; None if the study does not describe it."""
         return next((lug for lug in self.lugs if lug.connection == band), None)
 
 
 def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoads | None:
-    """The loads with the forces of the lugs of a structure, by equilibrium of forces and moments
-    across the pin; None unless there are two. Without the weight of the pin, which the closing
-    tractions of a balance carry.
+    """Return the loads with the forces of the structure's lugs added.
+
+    The forces follow from the equilibrium of transverse forces and moments, so there must be two
+    lugs; None if there is another number. The weight of the pin is not included: tractions for the
+    residual imbalance carry it.
+
+    structure: the names of the lugs' bands. If empty, the loads are returned unchanged.
     """
     if not structure:
         return loads
@@ -304,7 +319,7 @@ def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoa
     first, second = (pin.band(name).middle for name in structure)
     middles = np.array([pin.band(name).middle for name in loads.surfaces])
     force = loads.forces[:, :, :2]
-    # About the first support, of forces and of couples, along x and y.
+    # Moment about the first support, of the forces and of the couples, for the x and y directions.
     couple = np.stack([loads.moments[..., 1], -loads.moments[..., 0]], axis=-1)
     moment = (force * (middles - first)[:, None] + couple).sum(axis=1)
     at_second = -moment / (second - first)
@@ -313,15 +328,18 @@ def with_supports(pin: Pin, loads: PinLoads, structure: Sequence[str]) -> PinLoa
 
 
 def with_solved(loads: PinLoads, structure: Sequence[str], joint: JointForces) -> PinLoads:
-    """The loads, at the joint's instants, with the forces of a structure's lugs as the joint model
-    has them.
+    """Return the loads, at the instants of the joint model, with the forces of the structure's lugs
+    from the joint model added.
     """
     own = [joint.lugs.index(name) for name in structure]
     return _with_forces(loads, structure, joint.forces[:, own])
 
 
 def _with_forces(loads: PinLoads, structure: Sequence[str], across: Floats) -> PinLoads:
-    """across: of the structure's lugs on the pin, (T, S, 2) N."""
+    """Return loads with forces added on the bands of the structure's lugs.
+
+    across: (T, S, 2) transverse forces of the structure's lugs on the pin, N.
+    """
     added = np.concatenate([across, np.zeros((*across.shape[:2], 1))], axis=2)
     none = np.zeros_like(added)
     return replace(

@@ -1,4 +1,4 @@
-"""The work of a check: its formula, the numbers in it, and what would just pass."""
+"""The work of a check: its formula, the numbers in it, and the dimension that would just pass."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Annotated
 
 from fea.beam.round_section import Circle
 
-MAX_CHANGE = 10.0  # times by which a dimension is changed at most to find what just passes
-STEP_RATIO = 1.5  # of dimensions that are tried one after another; the root is between two
-PASSING_TOLERANCE = 1e-6  # relative, of the value that just passes
+MAX_CHANGE = 10.0  # largest factor on a dimension in the search for the value that just passes
+STEP_RATIO = 1.5  # ratio of successive trial dimensions; two of them bracket the root
+PASSING_TOLERANCE = 1e-6  # relative tolerance of the value that just passes
 
 
 @dataclass(frozen=True)
 class WorkQuantity:
-    """A number of a formula: its symbol, its value in SI and its dimension ("1" for a ratio)."""
+    """A quantity of a formula: its symbol, its value in SI and its dimension ("1" for a ratio)."""
 
     symbol: str
     value: Annotated[float, "own"]
@@ -26,8 +26,8 @@ class WorkQuantity:
 class Work:
     """A formula with its numbers and its result.
 
-    formula: with the symbols of the quantities in braces: "1.8 × {F_y} × {d} × {t}". Every term of
-    it has the same dimension in any system of units.
+    formula: text with the symbols of the quantities in braces: "1.8 × {F_y} × {d} × {t}". All its
+    terms have the same dimension, so that it holds in any system of units.
     """
 
     result: WorkQuantity
@@ -47,10 +47,10 @@ def work(
 
 
 def scaled(symbol: str, now: float, utilisation: float, power: float) -> WorkQuantity | None:
-    """Return the length that would just pass where what a check carries grows with a power of it;
-    None without a load.
+    """Return the length that would just pass; None without a load.
 
-    now: the present length, m.
+    now: the present length, m. power: the allowable load is proportional to this power of the
+    length.
     """
     if not 0.0 < utilisation < float("inf"):
         return None
@@ -60,11 +60,11 @@ def scaled(symbol: str, now: float, utilisation: float, power: float) -> WorkQua
 def wider(
     section: Circle, utilisation: float, power: float, resists: Callable[[Circle], float]
 ) -> WorkQuantity | None:
-    """Return the diameter of a pin that would just pass with its bore as it is; None without a
-    load, and where none within MAX_CHANGE does.
+    """Return the diameter of a pin that would just pass, its bore unchanged; None without a load,
+    or if no diameter of a bored pin within MAX_CHANGE passes.
 
-    resists: what a check carries in proportion to, which grows with a power of the diameter of a
-    solid pin.
+    resists: the section property to which the allowable load is proportional. power: of a solid
+    pin, the property is proportional to this power of the diameter.
     """
     if not section.inner or not 0.0 < utilisation < float("inf"):
         return scaled("diameter", 2.0 * section.outer, utilisation, power)
@@ -76,9 +76,9 @@ def wider(
 
 
 def diameter_of_wall(section: Circle, used: Callable[[float], float]) -> WorkQuantity | None:
-    """Return the diameter of a pin that would just pass with its bore as it is, as `would_pass`.
+    """Return the diameter of a pin that would just pass, its bore unchanged, as `would_pass`.
 
-    used: the utilisation by the wall of the section, m; of a solid one its radius.
+    used: the utilisation as a function of the wall thickness, m; of a solid section, its radius.
     """
     wall = would_pass(used, section.outer - section.inner)
     if wall is None:
@@ -87,12 +87,13 @@ def diameter_of_wall(section: Circle, used: Callable[[float], float]) -> WorkQua
 
 
 def would_pass(utilisation: Callable[[float], float], now: float) -> float | None:
-    """Return the value of a dimension nearest to the present one at which a utilisation is 1, on
-    its safe side; None where none is within MAX_CHANGE.
+    """Return the value of a dimension, nearest to the present one, at which a utilisation is 1. The
+    value is on the safe side; None if there is none within MAX_CHANGE.
 
-    utilisation: as a function of the dimension; it falls as this grows.
+    utilisation: a function of the dimension that decreases as the dimension grows.
     now: the present value.
     """
+    # Step away from the present value until two trials bracket the root, then bisect.
     step = STEP_RATIO if utilisation(now) > 1.0 else 1.0 / STEP_RATIO
     last = now
     while now / MAX_CHANGE <= last <= now * MAX_CHANGE:

@@ -4,12 +4,14 @@
     shifted bending      P_max = 2 C (sqrt(P_ub arm / C + g^2) - g)
                          C = P_1 P_2 / (P_1 t_2 + P_2 t_1)
 
-P_1 and P_2 are what one outer and the middle lug carry, with their bushings; t_1, t_2 their
-thicknesses, g the gap. P_ub = 2 M_u / arm is the load that breaks the pin in bending with even
-bearing, arm = t_1/2 + t_2/4 + g. A pin that yields bears more on the faces of the lugs that meet,
-as far as these carry it; P_max is the load with the widths b_1 and 2 b_2 that are left.
+P_1 and P_2 are the allowable loads of one outer lug and of the middle lug with their bushings; t_1
+and t_2 are their thicknesses and g is the gap. P_ub = 2 M_u / arm is the load that breaks the pin
+in bending with even bearing; arm = t_1/2 + t_2/4 + g. A yielding pin bears more on the facing sides
+of the lugs, as far as the lugs carry it; P_max is the load with the reduced bearing widths b_1 and
+2 b_2.
 
-The joint carries the least of lugs, shear of the pin, and the larger of both bending loads.
+The load of the joint is the smallest of the load of the lugs, the shear load of the pin, and the
+larger of both bending loads.
 
 Source: AFFDL-TR-69-42, Stress Analysis Manual, 9.4, equations 9-11 to 9-19.
 """
@@ -44,9 +46,9 @@ LAYOUT_NEEDED = "symmetrical double shear, with the sizes of all three lugs"
 class DoubleShear:
     """A joint in symmetrical double shear.
 
-    outer, middle: what one outer and the middle lug carry with their bushings, P_1 and P_2, N.
-    thickness: t_1 and t_2, gap: g, m. moment: M_u that breaks the pin, N m. shear: what breaks it
-    in both planes, N. section: that breaks first in bending.
+    outer, middle: loads of one outer lug and of the middle lug with their bushings, P_1 and P_2, N.
+    thickness: t_1 and t_2, m. gap: g, m. moment: M_u that breaks the pin, N m. shear: load that
+    shears the pin in both planes, N. section: the section that breaks first in bending.
     """
 
     outer: float
@@ -58,7 +60,7 @@ class DoubleShear:
     section: Circle
 
     def with_wall(self, wall: float) -> DoubleShear:
-        """The joint with another wall of the pin, m, in the same lugs."""
+        """Return the joint with another wall thickness of the pin, m, in the same lugs."""
         section = Circle(self.section.inner + wall, self.section.inner)
         moment = self.moment * section.modulus / self.section.modulus
         shear = self.shear * section.area / self.section.area
@@ -82,13 +84,13 @@ class DoubleShear:
 
     @property
     def line_load(self) -> float:
-        """C, N/m: half of the load per width with which both lugs bear up to failure (9-16)."""
+        """C, N/m: half of the load per width at which both lugs bear up to failure (9-16)."""
         t1, t2 = self.thickness
         return self.outer * self.middle / (self.outer * t2 + self.middle * t1)
 
     @property
     def shifted_bending(self) -> float:
-        """The same with the load shifted to the faces, N (9-16)."""
+        """The load that breaks the pin in bending with the load shifted to the faces, N (9-16)."""
         C, g = self.line_load, self.gap
         return 2.0 * C * (math.sqrt(self.even_bending * self.arm / C + g**2) - g)
 
@@ -105,7 +107,7 @@ class DoubleShear:
         return min(self.lugs, self.shear, max(self.even_bending, self.shifted_bending))
 
     def works(self) -> tuple[Work, ...]:
-        """The work of each load."""
+        """Return the work of each load."""
         (t1, t2), force, length = self.thickness, "force", "length"
         P_1, P_2 = (self.outer, force), (self.middle, force)
         return (
@@ -138,7 +140,7 @@ class DoubleShear:
        takes="statics", level="ultimate", dimension="force",
        omits=f"{LUG_OMITS} One diameter of the pin along all three lugs.")  # fmt: skip
 def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on the middle lug against what the joint carries with the load at the faces."""
+    """Return the margin of the force on the middle lug against the load of the joint."""
     joint = joint_of(s)
     if isinstance(joint, list):
         return [text.lacks(s, *joint)]
@@ -155,7 +157,9 @@ def affdl_joint(text: CheckText, s: Situation) -> list[Margin]:
 
 
 def joint_of(s: Situation) -> DoubleShear | list[str]:
-    """The joint of a situation, or what it lacks to be one, or to be checked."""
+    """Return the joint of a situation or, if it is not such a joint or cannot be checked, what is
+    missing.
+    """
     bands, eyes = _in_order(s)
     if len(bands) != len(eyes) or not in_double_shear(s):
         return [LAYOUT_NEEDED]
@@ -168,14 +172,16 @@ def joint_of(s: Situation) -> DoubleShear | list[str]:
 
 
 def _in_order(s: Situation) -> tuple[list[Band], list[LoadedEye]]:
-    """The bands along the pin, and the eyes of those of them whose size is given."""
+    """Return the bands in their order along the pin, and the eyes of the bands whose lug size is
+    given.
+    """
     eyes = {x.connection: x for x in loaded_eyes(s)}
     bands = sorted((s.pin.band(name) for name in s.loads.surfaces), key=lambda b: b.z0)
     return bands, [eyes[band.name] for band in bands if band.name in eyes]
 
 
 def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShear | list[str]:
-    """The joint of three bands, or the keys that the study lacks.
+    """Return the joint of three bands, or the keys that the study lacks.
 
     Raises: ArgumentError as assess.clauses.cozzone.
     """
@@ -203,7 +209,7 @@ def _joint(s: Situation, bands: list[Band], eyes: list[LoadedEye]) -> DoubleShea
 
 
 def _lug_load(s: Situation, x: LoadedEye) -> float | list[str]:
-    """The least load of a lug and its bushing, N, or the keys that the study lacks."""
+    """Return the smallest load of a lug and its bushing, N, or the keys that the study lacks."""
     every = bearing_capacity(s, x), net_section_capacity(s, x), bushing_capacity(x)
     lists = [[c] if isinstance(c, str) else c for c in every if isinstance(c, list | str)]
     if lists:

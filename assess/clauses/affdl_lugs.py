@@ -4,13 +4,14 @@
     net section      P_nu = K_n F (W - D) t     F = min(F_tu, 1.304 F_ty)
     bushing          P_u = 1.304 F_cy Dp t
 
-1.304 is 1.5 / 1.15: an ultimate load above that would yield the lug under limit load. All are at
-ultimate load. The efficiency factors K and K_n are those of figures 9-2 to 9-4, which no formula
-gives: the study states them. The yield strength of the bushing stands for that in compression, and
-that of the lug for the one across the grain.
+1.304 is 1.5 / 1.15: with a higher ultimate load the lug would yield under limit load. All loads are
+ultimate loads. The efficiency factors K and K_n are read off figures 9-2 to 9-4, for which there is
+no formula; the study states them. The yield strength of the bushing is used as its strength in
+compression, and the yield strength of the lug as that across the grain.
 
-The example of the manual has e/D up to 1.5, a/D = 1. Beyond that a/D is kept at 1, on the safe side
-of the formula; what the manual has there was not read, nor are K and K_n beyond the example.
+The example of the manual has e/D up to 1.5, a/D = 1. Beyond that a/D is kept at 1, which is on the
+safe side of the formula. The text of the manual for this range was not read, nor were K and K_n
+beyond the example.
 
 Source: AFFDL-TR-69-42, Stress Analysis Manual (reprint of October 1986), equations 9-2a, 9-3b, 9-6
 and 9-9 as in its example, 9.6 (docs/evidence.md), after the method of Melcon and Hoblit.
@@ -40,14 +41,14 @@ LUG_OMITS = (
 
 
 def lug_strength(yields: float, ultimate: float) -> float:
-    """The lower of the ultimate strength and 1.304 times yield, Pa (9-3, 9-6)."""
+    """Return the lower of the ultimate strength and 1.304 times yield, Pa (9-3, 9-6)."""
     return min(ultimate, ULTIMATE_OVER_YIELD * yields)
 
 
 def bearing_load(eye: PlateEye, K: float, yields: float, ultimate: float) -> Work:
-    """The ultimate load of the lug in bearing, shear-out and hoop tension, N (9-1 to 9-3).
+    """Return the ultimate load of the lug in bearing, shear-out and hoop tension, N (9-1 to 9-3).
 
-    K: of figure 9-2. yields, ultimate: strengths across the grain, Pa.
+    K: from figure 9-2. yields, ultimate: strengths across the grain, Pa.
     """
     strength = lug_strength(yields, ultimate)
     value = K * min(eye.a / eye.hole, 1.0) * strength * eye.hole * eye.thickness
@@ -60,9 +61,9 @@ def bearing_load(eye: PlateEye, K: float, yields: float, ultimate: float) -> Wor
 
 
 def net_section_load(eye: PlateEye, K_n: float, yields: float, ultimate: float) -> Work:
-    """The ultimate load of the net section, N (9-4 to 9-6).
+    """Return the ultimate load of the net section, N (9-4 to 9-6).
 
-    K_n: of figure 9-4. yields, ultimate: strengths, Pa.
+    K_n: from figure 9-4. yields, ultimate: strengths, Pa.
     """
     strength = lug_strength(yields, ultimate)
     value = K_n * strength * (eye.width - eye.hole) * eye.thickness
@@ -74,7 +75,7 @@ def net_section_load(eye: PlateEye, K_n: float, yields: float, ultimate: float) 
 
 
 def bushing_load(eye: PlateEye, crushes: float) -> Work:
-    """The ultimate load of a bushing, N (9-8, 9-9).
+    """Return the ultimate load of a bushing, N (9-8, 9-9).
 
     crushes: its yield strength in compression, Pa.
     """
@@ -92,19 +93,19 @@ _of_lugs = partial(
 
 @_of_lugs("AFFDL lug bearing", f"{MANUAL}, 9.3, eq. 9-1 to 9-3")
 def affdl_bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye against its load in bearing and shear-out."""
+    """Return the margins of the axial force on every eye in bearing and shear-out."""
     return _margins(text, s, bearing_capacity, "k_br")
 
 
 @_of_lugs("AFFDL lug net section", f"{MANUAL}, 9.3, eq. 9-4 to 9-6")
 def affdl_net_section(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye against the load of its net section."""
+    """Return the margins of the axial force on the net section of every eye."""
     return _margins(text, s, net_section_capacity, "k_t")
 
 
 @_of_lugs("AFFDL bushing", f"{MANUAL}, 9.3, eq. 9-8 and 9-9")
 def affdl_bushing(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every bushed eye against the yielding of its bushing."""
+    """Return the margins of the force on every bushed eye against yielding of the bushing."""
     margins = []
     for x in loaded_eyes(s):
         capacity = bushing_capacity(x)
@@ -116,19 +117,22 @@ def affdl_bushing(text: CheckText, s: Situation) -> list[Margin]:
 
 
 def bearing_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
-    """The load of an eye in bearing as a function of it, or the keys that the study lacks."""
+    """Return the bearing load as a function of the eye, or the keys that the study lacks."""
     return _capacity(s, x, "K", bearing_load)
 
 
 def net_section_capacity(s: Situation, x: LoadedEye) -> EyeCapacity | list[str]:
-    """The same of the load of its net section."""
+    """Return the load of the net section as a function of the eye, or the missing keys."""
     return _capacity(s, x, "K_n", net_section_load)
 
 
 def _capacity(
     s: Situation, x: LoadedEye, key: str, load: Callable[[PlateEye, float, float, float], Work]
 ) -> EyeCapacity | list[str]:
-    """key: of the efficiency factor of a load."""
+    """Return a load as a function of the eye, or the missing keys.
+
+    key: the name of the efficiency factor of the load.
+    """
     factor, strengths = getattr(s.factors_of(x.connection), key), strengths_of(x.lug)
     if factor is None or strengths.missing:
         named = [lug_key(s.pin.name, x.connection, "factors", key)] if factor is None else []
@@ -137,7 +141,7 @@ def _capacity(
 
 
 def bushing_capacity(x: LoadedEye) -> EyeCapacity | str | None:
-    """The load of a bushing as a function of its eye, or the key that is missing; None without a
+    """Return the load of a bushing as a function of the eye, or the missing key; None without a
     bushing.
     """
     if x.bushing is None:
@@ -154,7 +158,11 @@ def _margins(
     capacity_of: Callable[[Situation, LoadedEye], EyeCapacity | list[str]],
     instead: str,
 ) -> list[Margin]:
-    """instead: the factor by which another check covers the same, where only that is given."""
+    """Return the margins of the axial force on every eye.
+
+    instead: the name of the factor of an equivalent check. If only that factor is given, a missing
+    factor of this check is not reported.
+    """
     margins = list[Margin]()
     for x in loaded_eyes(s):
         if not x.axial.any():

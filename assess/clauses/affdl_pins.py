@@ -32,7 +32,7 @@ from pinbase.arrays import Floats
 @check("pin shear, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-12", kind="clause",
        takes="section forces", level="ultimate", dimension="force", omits=PIN_OMITS)  # fmt: skip
 def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The shear force in every section against A F_su."""
+    """Return the margin of the shear force in the worst section against A F_su."""
     fsu = s.material.shear_strength
     if s.forces.kind == "concentrated":
         return []
@@ -53,10 +53,10 @@ def pin_shear(text: CheckText, s: Situation) -> list[Margin]:
 @check("pin bending, rupture", "AFFDL-TR-69-42, 9.4, eq. 9-15; Cozzone", kind="clause",
        takes="section forces", level="ultimate", dimension="moment", omits=PIN_OMITS)  # fmt: skip
 def pin_bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The bending moment in the worst section against F_b W.
+    """Return the margin of the bending moment in the worst section against F_b W.
 
-    Even bearing is there for comparison where the joint is checked with the load at the faces, or
-    with pressure that peaks there (assess.clauses.melcon_hoblit_pin).
+    With even bearing the margin is for comparison only if the joint is also checked with the load
+    shifted to the faces, or with pressure peaks there (assess.clauses.melcon_hoblit_pin).
     """
     if s.forces.kind == "concentrated":
         return []
@@ -91,10 +91,11 @@ def _worst(
     resisted: Callable[[Circle], tuple[Work, ...]],
     grows: tuple[str, float],
 ) -> Margin:
-    """The margin of the section that a demand (T, S) uses most.
+    """Return the margin of the section with the highest utilisation.
 
-    resisted: the work of what a section resists, the last its result. grows: the property of the
-    section with which that grows, and the power of the diameter with which this does.
+    demand: (T, S). resisted: the works of a section's resistance; the last has the result. grows:
+    the name of the section property to which the resistance is proportional, and the power of the
+    diameter to which this property is proportional.
     """
     forces, (per, power) = s.forces, grows
     works = {section: resisted(section) for section in set(forces.sections)}

@@ -6,12 +6,13 @@
     yielding             P_n = F_y w t                   phi 0.90    Omega 1.67
 
 b_e = 2 t + 0.63 in, at most the width beside the hole; a is the distance from the hole to the end
-of the plate. By load and resistance factors (LRFD) phi P_n is at ultimate load, whose factor stands
-for those of the load combinations; by allowable strengths (ASD) P_n / Omega is at limit load.
+of the plate. With load and resistance factors (LRFD) phi P_n is compared at ultimate load, whose
+factor replaces those of the load combinations. With allowable strengths (ASD) P_n / Omega is
+compared at limit load.
 
-D5.2 demands a >= 1.33 b_e, and of a joint that turns under load a hole of at most d + 1/32 in; that
-w >= 2 b_e + d follows from b_e. A plate without these proportions is named: the strengths are for
-plates that have them.
+D5.2 requires a >= 1.33 b_e and, in a joint that rotates under load, a hole of at most d + 1/32 in;
+w >= 2 b_e + d follows from b_e. Plates that do not meet these proportions are reported, because the
+strengths hold only for plates that do.
 
 Source: AISC Design Examples 15, D.7 (docs/evidence.md), which has the strengths P_n, phi = 0.75 and
 Omega = 2.00; figure C-D5.1 of the commentary on ANSI/AISC 360-10, and D3 of the LRFD Specification
@@ -33,10 +34,10 @@ from assess.situation import Situation
 from assess.work import Work, work
 
 RUPTURE_PHI, YIELD_PHI = 0.75, 0.90  # resistance factors; the second is not verified
-RUPTURE_OMEGA, YIELD_OMEGA = 2.00, 1.67  # safety factors; likewise
-WIDTH_BEYOND_THICKNESS = 0.63 * 0.0254  # m, of b_e
-MIN_END = 1.33  # of b_e
-MAX_PLAY = 0.0254 / 32.0  # of the hole over the pin, m
+RUPTURE_OMEGA, YIELD_OMEGA = 2.00, 1.67  # safety factors; the second is not verified
+WIDTH_BEYOND_THICKNESS = 0.63 * 0.0254  # constant term of b_e, m
+MIN_END = 1.33  # smallest a over b_e
+MAX_PLAY = 0.0254 / 32.0  # largest difference of the diameters of hole and pin, m
 PLAY_NEEDED = "a hole at most 1/32 in wider than the pin (D5.2: if it turns under load) at lug"
 AISC_D5_OMITS = (
     "Not covered: forces across the plate, corners cut off by more than 45 degrees, load "
@@ -114,7 +115,7 @@ def _designed(
 
 
 def proportions(eye: PlateEye, connection: str) -> list[str]:
-    """The proportions that D5.2 demands and a plate does not have; connection: its lug."""
+    """Return the requirements of D5.2 that a plate does not meet; connection: its lug."""
     short = eye.a / effective_width(eye)
     lacking = []
     if short < MIN_END * (1.0 - ROUND_OFF):
@@ -138,7 +139,7 @@ _FORMS = (
 @check("AISC pin-connected member", "ANSI/AISC 360-16, D5", kind="clause", takes="loads",
        level="ultimate", dimension="force", omits=AISC_D5_OMITS)  # fmt: skip
 def aisc_member(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every plate against its limit states."""
+    """Return the margins of the force on every plate against its limit states."""
     if s.aisc == "ASD":
         text = replace(text, level="limit")
     margins = []

@@ -10,10 +10,11 @@
     C_r = 1 - 0.275 sqrt(1 - (D_p/D_h)^2)      A_v = 2 (a + D_p/2 (1 - cos phi) - Z') t
     phi = 55 degrees D_p/D_h      Z' = r - sqrt(r^2 - (D_p sin(phi) / 2)^2), 0 for a straight end
 
-They are at the loads of the study (limit load): N_d, which the study states, is the margin. C_r is
-taken for every pin, however well it fills its hole, which is the safe side.
+The strengths are compared at the loads of the study (limit load): the safety is in N_d, which the
+study states. C_r is applied to every pin, however closely it fits its hole, which is on the safe
+side.
 
-b_eff is the efficiency of a wide net section: beyond it, more width does not carry more.
+b_eff accounts for the limited efficiency of a wide net section: width beyond it carries no load.
 
 Source: five spreadsheets after ASME BTH-1-2005, equations 3-45 to 3-51 and C3-2, which were not
 themselves read (docs/evidence.md); D. Duerr, Pinned Connection Strength and
@@ -34,9 +35,9 @@ from assess.situation import Situation
 from assess.work import Work, work
 
 CLAUSE = "ASME BTH-1-2005, eq. 3-45 to 3-51"
-FRACTURE_FACTOR = 1.2  # on N_d, of limit states of fracture
-SHEAR_PLANE_DEGREES = 55.0  # of a pin that fills its hole
-MAX_WIDTH_OVER_THICKNESS = 4.0  # of b_eff, against dishing
+FRACTURE_FACTOR = 1.2  # factor on N_d for limit states of fracture
+SHEAR_PLANE_DEGREES = 55.0  # phi for a pin that fills its hole
+MAX_WIDTH_OVER_THICKNESS = 4.0  # limit of b_eff / t, against dishing
 DESIGN_FACTOR_KEY = "analysis.design_factor (N_d of ASME BTH-1)"
 BTH1_OMITS = (
     "Not covered: forces across the plate, bushings of their own strength, buckling out of plane "
@@ -46,19 +47,19 @@ BTH1_OMITS = (
 
 
 def pin_to_hole(eye: PlateEye) -> float:
-    """C_r, which a pin smaller than its hole reduces."""
+    """Return C_r, which is less than 1 for a pin smaller than its hole."""
     return 1.0 - 0.275 * math.sqrt(max(1.0 - (eye.bearer / eye.hole) ** 2, 0.0))
 
 
 def effective_width(eye: PlateEye, ultimate_over_yield: float) -> float:
-    """b_eff, m, of the net section on each side of the hole."""
+    """Return b_eff, m, of the net section on each side of the hole."""
     b = eye.side
     wide = 0.6 * b * ultimate_over_yield * math.sqrt(eye.hole / b)
     return min(b, MAX_WIDTH_OVER_THICKNESS * eye.thickness, wide)
 
 
 def tension_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
-    """P_t, N. yields, ultimate: F_y and F_u, Pa. design_factor: N_d."""
+    """Return P_t, N. yields, ultimate: F_y and F_u, Pa. design_factor: N_d."""
     C_r, b_eff = pin_to_hole(eye), effective_width(eye, ultimate / yields)
     value = C_r * ultimate * 2.0 * eye.thickness * b_eff / (FRACTURE_FACTOR * design_factor)
     return work(
@@ -69,7 +70,7 @@ def tension_strength(eye: PlateEye, yields: float, ultimate: float, design_facto
 
 
 def fracture_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
-    """P_b, N; arguments as `tension_strength`."""
+    """Return P_b, N; arguments as `tension_strength`."""
     C_r, b = pin_to_hole(eye), eye.side
     length = 1.13 * (eye.e - eye.hole / 2.0) + 0.92 * b / (1.0 + b / eye.hole)
     value = C_r * ultimate * length * eye.thickness / (FRACTURE_FACTOR * design_factor)
@@ -83,7 +84,7 @@ def fracture_strength(eye: PlateEye, yields: float, ultimate: float, design_fact
 
 
 def shear_area(eye: PlateEye) -> float:
-    """A_v, m^2, of both planes of shear beyond the pin."""
+    """Return A_v, m^2, the area of both shear planes beyond the pin."""
     phi = math.radians(SHEAR_PLANE_DEGREES * eye.bearer / eye.hole)
     beyond = eye.a + eye.bearer / 2.0 * (1.0 - math.cos(phi))
     if not eye.square:
@@ -92,7 +93,7 @@ def shear_area(eye: PlateEye) -> float:
 
 
 def shear_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
-    """P_v, N; arguments as `tension_strength`."""
+    """Return P_v, N; arguments as `tension_strength`."""
     A_v = shear_area(eye)
     value = 0.70 * ultimate * A_v / (FRACTURE_FACTOR * design_factor)
     return work(
@@ -102,7 +103,7 @@ def shear_strength(eye: PlateEye, yields: float, ultimate: float, design_factor:
 
 
 def bearing_strength(eye: PlateEye, yields: float, ultimate: float, design_factor: float) -> Work:
-    """P_p, N; arguments as `tension_strength`."""
+    """Return P_p, N; arguments as `tension_strength`."""
     value = 1.25 * yields * eye.bearer * eye.thickness / design_factor
     return work(
         "P_p", value, "force", "1.25 × {F_y} × {D_p} × {t} / {N_d}",
@@ -117,25 +118,25 @@ Strength = Callable[[PlateEye, float, float, float], Work]  # arguments as `tens
 
 @_of_plates("BTH-1 plate, tension", CLAUSE)
 def bth1_tension(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every plate against its net section."""
+    """Return the margins of every plate in tension on the net section."""
     return _margins(text, s, tension_strength, "width")
 
 
 @_of_plates("BTH-1 plate, single-plane fracture", CLAUSE)
 def bth1_fracture(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every plate against the fracture beyond the pin."""
+    """Return the margins of every plate in single-plane fracture beyond the pin."""
     return _margins(text, s, fracture_strength, "width")
 
 
 @_of_plates("BTH-1 plate, double-plane shear", CLAUSE)
 def bth1_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every plate against the shear in two planes beyond the pin."""
+    """Return the margins of every plate in double-plane shear beyond the pin."""
     return _margins(text, s, shear_strength, "width")
 
 
 @_of_plates("BTH-1 plate, bearing", CLAUSE)
 def bth1_bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every plate against the bearing of its pin."""
+    """Return the margins of every plate in bearing of its pin."""
     return _margins(text, s, bearing_strength, "thickness")
 
 

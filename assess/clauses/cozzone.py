@@ -1,12 +1,12 @@
-"""The bending strength of a pin past yield, by Cozzone or by a factor that the study states.
+"""The bending strength of a pin beyond yield, by Cozzone or by a factor that the study states.
 
     F_b = k_b F_tu, or F_tu + f_0 (k - 1)
 
-k is the plastic section modulus over the elastic one, 1.698 for a solid round pin. f_0 is the
-stress at the neutral axis of the trapezoid that carries the same moment as the stress-strain curve
-of Ramberg and Osgood up to the strain at the ultimate strength. k_b is read off a figure; a study
-that states it (`bending_factor` of the pin) does without the strain. For solid round pins 1.44,
-1.50 and 1.56 are in use.
+k is the ratio of the plastic to the elastic section modulus, 1.698 for a solid round pin. f_0 is
+the stress at the neutral axis of a trapezoidal stress distribution that carries the same moment as
+the Ramberg-Osgood curve up to the strain at the ultimate strength. k_b is read off a figure; a
+study that states it (`bending_factor` of the pin) need not state the strain. For solid round pins
+1.44, 1.50 and 1.56 are in use.
 
 Source: a worked example by J. C. Banks (docs/evidence.md) after E. F. Bruhn, Analysis and Design of
 Flight Vehicle Structures, C3.3, and F. P. Cozzone, J. Aero. Sci. (1943), which were not read.
@@ -29,7 +29,7 @@ YIELD_OFFSET = 0.002  # plastic strain at the yield strength
 
 
 def hardening_exponent(material: Material, ultimate_strain: float) -> float:
-    """Ramberg and Osgood's exponent n through the yield and the ultimate strength.
+    """Return the Ramberg-Osgood exponent n of the curve through yield and ultimate strength.
 
     ultimate_strain: total strain at the ultimate strength.
 
@@ -47,10 +47,11 @@ def hardening_exponent(material: Material, ultimate_strain: float) -> float:
 
 
 def trapezoid_stress(material: Material, ultimate_strain: float) -> float:
-    """Cozzone's f_0 at the ultimate strength, Pa; arguments and errors as `hardening_exponent`.
+    """Return Cozzone's f_0 at the ultimate strength, Pa; arguments and errors as
+    `hardening_exponent`.
 
-    A rectangle of depth h carries (6 / h^2) integral of stress times distance, which the trapezoid
-    gives as F_tu + f_0 / 2; the integral over the curve is exact.
+    For a rectangular section of depth h, (6 / h^2) times the integral of stress times distance is
+    F_tu + f_0 / 2 for the trapezoid. The integral over the curve is exact.
     """
     n, fu = hardening_exponent(material, ultimate_strain), material.ultimate_strength or 0.0
     x, total = fu / material.youngs_modulus, ultimate_strain
@@ -60,7 +61,7 @@ def trapezoid_stress(material: Material, ultimate_strain: float) -> float:
 
 
 def cozzone_strength(material: Material, section: Circle, ultimate_strain: float) -> Work:
-    """Cozzone's bending strength F_b of a section, Pa; errors as `hardening_exponent`."""
+    """Return Cozzone's bending strength F_b of a section, Pa; errors as `hardening_exponent`."""
     fu, f_0 = material.ultimate_strength or 0.0, trapezoid_stress(material, ultimate_strain)
     k = section.plastic_modulus / section.modulus
     return work(
@@ -70,7 +71,7 @@ def cozzone_strength(material: Material, section: Circle, ultimate_strain: float
 
 
 def bending_strength(s: Situation, section: Circle) -> Work | list[str]:
-    """The bending strength F_b of a section of the pin, Pa, or the keys that the study lacks.
+    """Return the bending strength F_b of a section of the pin, Pa, or the missing keys.
 
     Raises: ArgumentError as `hardening_exponent`.
     """

@@ -3,9 +3,10 @@
     across the shank   P = K_BR F_tu D t        K_BR = -0.463 + 0.580 W/D
     at the bore        sigma = K_tb F / (D t)   K_tb = 2.75 (W/D - 1)^-0.675
 
-for straight lugs, the first symmetric, the second pulled axially. The second is the elastic peak,
-beside yield for comparison: a lug yields locally long before it fails. K_BR of other directions is
-a curve over K_tb that is printed only as a figure, so there is no check of axial strength here.
+for straight lugs. The first formula is for symmetric lugs, the second for axial pull. The second is
+the elastic peak stress; it is compared with yield for comparison only, because a lug yields locally
+long before it fails. K_BR in other directions is a curve over K_tb that is printed only as a
+figure, so there is no check of axial strength here.
 
 Source: J. C. Ekvall, Static Strength Analysis of Pin-Loaded Lugs, J. Aircraft 23(5), 1986, 438-443.
 """
@@ -36,12 +37,12 @@ EKVALL_OMITS = (
 
 
 def transverse_efficiency(eye: PlateEye) -> float:
-    """K_BR of a straight symmetric lug under a load across its shank."""
+    """Return K_BR of a straight symmetric lug under a load across its shank."""
     return -0.463 + 0.580 * eye.width / eye.hole
 
 
 def transverse_load(eye: PlateEye, ultimate: float) -> Work:
-    """The ultimate load across the shank, N. ultimate: strength, Pa."""
+    """Return the ultimate load across the shank, N. ultimate: ultimate strength, Pa."""
     value = transverse_efficiency(eye) * ultimate * eye.hole * eye.thickness
     return work(
         "P", value, "force", "(−0.463 + 0.580 × {W} / {D}) × {F_tu} × {D} × {t}",
@@ -51,12 +52,14 @@ def transverse_load(eye: PlateEye, ultimate: float) -> Work:
 
 
 def bore_factor(eye: PlateEye) -> float:
-    """K_tb, the elastic stress at the bore over F / (D t), of a straight lug pulled axially."""
+    """Return K_tb of a straight lug pulled axially: the elastic stress at the bore over
+    F / (D t).
+    """
     return float(2.75 * (eye.width / eye.hole - 1.0) ** BORE_EXPONENT)
 
 
 def bore_stress(eye: PlateEye, force: float) -> Work:
-    """The largest elastic stress at the bore, Pa, of an axial force, N."""
+    """Return the largest elastic stress at the bore, Pa, under an axial force, N."""
     value = bore_factor(eye) * force / (eye.hole * eye.thickness)
     return work(
         "sigma", value, "stress", "2.75 × ({W} / {D} − 1)^-0.675 × {F} / ({D} × {t})",
@@ -68,7 +71,7 @@ def bore_stress(eye: PlateEye, force: float) -> Work:
 @check("Ekvall transverse", f"{EKVALL}, K_BR", kind="clause", takes="loads", level="ultimate",
        dimension="force", scatter=SCATTER, omits=EKVALL_OMITS)  # fmt: skip
 def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
-    """The force across the shank of every symmetric lug against K_BR F_tu D t."""
+    """Return the margins of the force across the shank of every symmetric lug."""
     margins = []
     for x in loaded_eyes(s):
         if not x.transverse.any():
@@ -88,7 +91,9 @@ def ekvall_transverse(text: CheckText, s: Situation) -> list[Margin]:
 @check("lug, elastic stress at the bore", f"{EKVALL}, K_tb", kind="clause", takes="loads",
        omits="Not covered: forces across the shank, fits, bending of the pin.")  # fmt: skip
 def ekvall_bore_stress(text: CheckText, s: Situation) -> list[Margin]:
-    """The elastic peak at the bore of every axially loaded lug against yield, for comparison."""
+    """Return the margins against yield of the elastic peak stress at the bore of every axially
+    loaded lug, for comparison.
+    """
     margins = []
     for x in loaded_eyes(s):
         fy, t = x.lug.yield_strength, int(x.axial.argmax())

@@ -4,17 +4,18 @@
     v = V_Ed / V_pl,Rd + T_Ed / T_Rd                 rho = (2 v - 1)^2 above v = 0.5, else 0
     M_Ed <= M_N,V,Rd
 
-M_N,V,Rd is the plastic moment that an axial force leaves (6.2.9) at the yield strength (1 - rho)
-f_y (6.2.8, 6.2.10). For round sections the clause gives it no formula: here it is exact for a fully
-plastic one, solid or hollow (fea.beam.plastic_interaction). With b, the part of M_pl,Rd and N_pl,Rd
-that M_Ed and N_Ed use together, the check is b <= 1 - rho; the part of the loads that a section
-carries is then 1/R,
+M_N,V,Rd is the plastic moment that remains beside an axial force (6.2.9) at the yield strength
+(1 - rho) f_y (6.2.8, 6.2.10). The clause gives no formula for round sections; here it is exact for
+a fully plastic section, solid or hollow (fea.beam.plastic_interaction). With b, the utilisation of
+M_pl,Rd and N_pl,Rd by M_Ed and N_Ed together, the check is b <= 1 - rho. The factor on all loads at
+which b = 1 - rho is 1/R, with
 
     R = b where 2 v <= b, else 4 v^2 / (4 v - b)
 
-On the safe side are the shear area, of a tube also for solid pins; the reduction of the yield
-strength in all of the section instead of the shear area; the elastic torsional modulus W_t; and the
-sum of shear and torsion (V_Ed over the V_pl,T,Rd of 6.2.7 is less as long as the sum is below 1).
+Four simplifications are on the safe side: the shear area is that of a tube also for solid pins; the
+yield strength is reduced in the whole section, not only in the shear area; W_t is the elastic
+torsional modulus; and shear and torsion are added (V_Ed over the V_pl,T,Rd of 6.2.7 is less as long
+as the sum is below 1).
 
 Tubes must be of class 1 or 2: d/t up to 70 * 235 MPa / f_y (table 5.2).
 
@@ -37,7 +38,7 @@ from fea.beam.round_section import Circle
 from pinbase.arrays import Floats
 
 MAX_SLENDERNESS, SLENDERNESS_STRENGTH = 70.0, 235e6  # d/t of class 2, times epsilon^2; Pa
-MAX_LEFT = 0.01  # of the largest force along the pin, or torque: more is not in balance
+MAX_LEFT = 0.01  # resultant relative to the largest axial force or torque; more is unbalanced
 REACTION_NEEDED = (
     "the forces along the pin and torques of a structure's lugs, which the solved joint gives"
 )
@@ -49,7 +50,7 @@ CLASS_NEEDED = "walls of class 1 or 2 (d/t at most 70 times 235 MPa over the yie
        takes="section forces", level="ultimate", dimension=RATIO_DIMENSION,
        omits="Not covered: buckling, what loads press into a wall.")  # fmt: skip
 def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
-    """Moment, shear, axial force and torque of the section that they use most, against 1."""
+    """Return the margin of moment, shear, axial force and torque in the worst section."""
     forces, fy = s.forces, s.material.yield_strength
     if forces.kind == "concentrated":
         return []
@@ -72,7 +73,7 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
     )  # fmt: skip
     factor = s.factors.at(text.level)
 
-    # Where the section is the same: with its diameter the worst place may change.
+    # A change of the diameter changes all places with this section, so the worst place may change.
     alike = np.array([other == section for other in forces.sections])
 
     def of_wall(wall: float) -> float:
@@ -86,10 +87,10 @@ def eurocode_section(text: CheckText, s: Situation) -> list[Margin]:
 def section_use(
     section: Circle, strength: float, V: Floats, M: Floats, N: Floats, T: Floats
 ) -> Floats:
-    """R of shear and axial forces, N, moments and torques, N m, (...) each; infinite where shear
-    alone is too much with all loads in proportion.
+    """Return R, the reciprocal of the factor that all loads may reach in proportion, (...).
 
-    strength: the design yield strength, Pa.
+    V, N: (...) shear and axial forces, N. M, T: (...) moments and torques, N m. strength: the
+    design yield strength, Pa.
     """
     v = V / plastic_shear(section, strength) + T / torsion_resistance(section, strength)
     in_plastic = M / (section.plastic_modulus * strength), N / (section.area * strength)
@@ -100,17 +101,17 @@ def section_use(
 
 
 def plastic_shear(section: Circle, strength: float) -> float:
-    """V_pl,Rd, N, of a design yield strength, Pa (6.2.6 (3) g)."""
+    """Return V_pl,Rd, N, for a design yield strength, Pa (6.2.6 (3) g)."""
     return 2.0 / math.pi * section.area * strength / math.sqrt(3.0)
 
 
 def torsion_resistance(section: Circle, strength: float) -> float:
-    """T_Rd, N m, at which the outer fibre yields; of a design yield strength, Pa."""
+    """Return T_Rd, N m, at which the outer fibre yields, for a design yield strength, Pa."""
     return section.polar / section.outer * strength / math.sqrt(3.0)
 
 
 def _left_along(s: Situation) -> bool:
-    """Whether forces along the pin or torques are left that no band takes."""
+    """Whether axial forces or torques have a resultant that no band reacts."""
     loads = s.by_formula
     return any(
         bool(np.abs(x.sum(axis=1)).max() > MAX_LEFT * np.abs(x).max())
@@ -123,12 +124,12 @@ def _slenderness(section: Circle) -> float:
 
 
 def _four(forces: SectionForces) -> tuple[Floats, Floats, Floats, Floats]:
-    """V, M, N, T, (T, S) each."""
+    """Return V, M, N, T, (T, S) each."""
     return forces.shear, forces.moment, forces.axial, forces.torque
 
 
 def _along(forces: SectionForces, k: int, design: float) -> Floats:
-    """R at a station, by its number, at all instants (T,)."""
+    """Return R at a station, by its number, at all instants (T,)."""
     return section_use(forces.sections[k], design, *(x[:, k] for x in _four(forces)))
 
 

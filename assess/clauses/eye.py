@@ -1,4 +1,4 @@
-"""The eye of a lug as clauses see it, and the force on it along and across its shank."""
+"""The eye of a lug as the clauses model it, and the force on it along and across its shank."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from geometry import ArgumentError
 from pinbase.arrays import Floats
 
 EyeUtilisation = Callable[["PlateEye"], float]
-MAX_UTILISATION = 1e9  # that of an eye that cannot be, so that roots can be sought
-ROOT_TOLERANCE = 0.01  # of a utilisation of 1; further off is the last eye that can be, no root
-ROUND_OFF = 1e-9  # of a force, up to which its component along a direction is none
+MAX_UTILISATION = 1e9  # utilisation of an impossible eye, so that the root search can continue
+ROOT_TOLERANCE = (
+    0.01  # from a utilisation of 1; beyond it the search ended at the last possible eye
+)
+ROUND_OFF = 1e-9  # relative to a force: a smaller component is zero
 AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 
 
@@ -27,13 +29,13 @@ AXIAL_BASIS = "the force taken along the shank, whose direction is not given"
 class PlateEye:
     """The head of a lug, m.
 
-    width: W, through the centre of the bore. hole: D, in the lug itself, around a bushing if there
-    is one. pin: Dp. thickness: t.
-    end: e, from the centre of the bore to the end of the head; None: that of a round head, W / 2.
-    square: whether its end is straight. eccentric: whether its width is less than the diameter of
-    the round head, which then does not follow from it. shank: the width of what holds the head.
+    width: W, at the centre of the bore. hole: D, the hole in the lug itself, which is around the
+    bushing if there is one. pin: Dp. thickness: t.
+    end: e, from the centre of the bore to the end of the head; None for a round head, W / 2.
+    square: whether the end is straight. eccentric: whether the width is less than the diameter of
+    the round head, which then does not follow from the width. shank: the width of the shank.
 
-    Raises: ArgumentError for a head that is not wider, or does not reach further, than its hole.
+    Raises: ArgumentError for a head that is not wider than its hole or ends within the hole.
     """
 
     width: float
@@ -67,7 +69,7 @@ class PlateEye:
 
     @property
     def bearer(self) -> float:
-        """The diameter of what bears in the hole, m: the pin, or a bushing."""
+        """The diameter of the part that bears in the hole, m: the pin, or a bushing."""
         return self.hole if self.bushed else self.pin
 
     @property
@@ -76,8 +78,10 @@ class PlateEye:
         return (self.width - self.hole) / 2.0
 
     def would_pass(self, dimension: str, utilisation: EyeUtilisation) -> float | None:
-        """The value of a dimension, m, at which a utilisation of the eye is 1; None where none is
-        near, where every eye that can be passes, and for the width of an eccentric head.
+        """Return the value of a dimension, m, at which a utilisation of the eye is 1.
+
+        None if there is no such value nearby, if every possible eye passes, and for the width of an
+        eccentric head.
         """
         if self.eccentric and dimension == "width":
             return None
@@ -95,11 +99,13 @@ class PlateEye:
 
 @dataclass(frozen=True)
 class LoadedEye:
-    """An eye with the material around it and the force of its link at every instant.
+    """An eye with its materials and the force of its link at every instant.
 
-    connection: the lug's. lug: its material. bushing: that of its bushing, if there is one.
-    size: of the force across the pin, (T,) N. axial: its part along the shank that pulls the lug,
-    zero where it pushes; transverse: across the shank. basis: how these were found.
+    connection: name of the lug's connection. lug: material of the lug. bushing: material of the
+    bushing, if there is one.
+    size: (T,) magnitude of the transverse force on the pin, N. axial: (T,) its component along the
+    shank that pulls the lug, N, zero where it pushes. transverse: (T,) its component across the
+    shank, N. basis: how these were found.
     """
 
     connection: str
@@ -113,10 +119,10 @@ class LoadedEye:
 
 
 def eye_of(s: Situation, lug: Lug) -> PlateEye:
-    """The eye of a lug on its band of the pin, as thick as the band is long.
+    """Return the eye of a lug on its band of the pin; its thickness is the length of the band.
 
-    Without a shank the head is round, and its end half of its width from the centre. The hole is
-    as much larger than the pin as the largest clearance that is stated, and the walls of a bushing.
+    Without a shank the head is round, with its end half its width from the centre. The hole is
+    larger than the pin by the largest stated clearance and the walls of a bushing.
     """
     band, bushed, shank = s.pin.band(lug.connection), lug.bushing is not None, lug.shank
     pin = 2.0 * band.radius
@@ -132,9 +138,9 @@ def eye_of(s: Situation, lug: Lug) -> PlateEye:
 
 
 def loaded_eyes(s: Situation) -> list[LoadedEye]:
-    """The eyes of all lugs whose size the study gives and whose links push on the pin.
+    """Return the eyes of all lugs whose size the study gives and which load the pin.
 
-    Without the direction of its shank a lug is taken as pulled along it by the whole force.
+    If the direction of the shank is unknown, the whole force is assumed to pull along the shank.
     """
     eyes = []
     for lug in s.sized:
@@ -161,12 +167,12 @@ def loaded_eyes(s: Situation) -> list[LoadedEye]:
 
 
 def place_of(s: Situation, loaded: LoadedEye, instant: int) -> WorstPlace:
-    """The middle of the eye's band, at an instant of the loads."""
+    """Return the middle of the eye's band, at an instant of the loads."""
     return WorstPlace.at_band(s.pin.band(loaded.connection), s.loads, instant)
 
 
 def shank_angle(s: Situation, lug: Lug) -> Floats | None:
-    """The angle of a lug's shank at the instants of the loads, (T,) rad; None if not known."""
+    """Return the angle of a lug's shank at the instants of the loads, (T,) rad; None if unknown."""
     if lug.shank is None:
         return None
     turning = s.shank_angles.get(lug.connection)
@@ -176,5 +182,5 @@ def shank_angle(s: Situation, lug: Lug) -> Floats | None:
 
 
 def _beyond_round_off(component: Floats, size: Floats) -> Floats:
-    """The positive part of a component of forces, without round-off."""
+    """Return the positive part of a force component, without round-off."""
     return np.where(component > ROUND_OFF * size, component, 0.0)

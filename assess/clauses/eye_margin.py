@@ -1,4 +1,4 @@
-"""The margin of an eye: a force on it against what a clause allows, with the work."""
+"""The margin of an eye: the force on it against the force that a clause allows, with the work."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from fea.core.material import Material
 from pinbase.arrays import Floats
 
 EyeCapacity = Callable[[PlateEye], Work]  # the force that an eye carries, N
-MAX_TRANSVERSE_RATIO = 0.05  # of the force, up to which a clause for axial loads is applied
+MAX_TRANSVERSE_RATIO = 0.05  # transverse part of a force up to which axial clauses are applied
 DIMENSION_NAMES = {"width": "outer_diameter", "thickness": "thickness", "pin": "diameter"}
 
 
 @dataclass(frozen=True)
 class Strengths:
-    """Strengths of the material of a lug, Pa, which a clause needs; `missing` has their keys."""
+    """The strengths of a lug's material that a clause needs, Pa; missing: keys of missing ones."""
 
     yields: float
     ultimate: float
@@ -29,23 +29,23 @@ class Strengths:
 
 
 def strengths_of(material: Material) -> Strengths:
-    """The yield and ultimate strength of a material, zero where they are missing."""
+    """Return the yield and ultimate strength of a material, zero where missing."""
     both = {"yield": material.yield_strength, "ultimate": material.ultimate_strength}
     missing = tuple(strength_key(material.name, w) for w, x in both.items() if x is None)
     return Strengths(both["yield"] or 0.0, both["ultimate"] or 0.0, missing)
 
 
 def not_axial(text: CheckText, s: Situation, loaded: LoadedEye) -> Margin | None:
-    """The margin of a clause for a pull along the shank that it lacks, as of `lacks_pull`, or None
-    where there is one.
+    """Return a margin that states why a clause for axial pull cannot be applied (`lacks_pull`);
+    None if it can.
     """
     need = lacks_pull(loaded)
     return text.lacks(s, need) if need else None
 
 
 def lacks_pull(loaded: LoadedEye) -> str:
-    """The lack of a clause for a pull along the shank where a force acts across it, or only pushes;
-    else empty.
+    """Return why a clause for axial pull cannot be applied to an eye: a force acts across the
+    shank, or the force only pushes. Empty if it can be applied.
     """
     at = f"at lug {loaded.connection}"
     if loaded.transverse.max() > MAX_TRANSVERSE_RATIO * loaded.size.max():
@@ -66,10 +66,10 @@ def eye_margin(
     capacity: EyeCapacity,
     dimension: str,
 ) -> Margin:
-    """The margin of the largest force on an eye.
+    """Return the margin of the largest force on an eye.
 
-    force: (T,) N at the instants of the loads. dimension: of the eye, which is changed until it
-    just passes; it must raise the capacity.
+    force: (T,) N at the instants of the loads. dimension: the dimension of the eye that is changed
+    until the eye just passes; a larger dimension must give a larger capacity.
     """
     instant = int(force.argmax())
     largest, factor = float(force[instant]), s.factors.at(text.level)

@@ -1,21 +1,22 @@
 """Hand checks of the lugs in which a pin sits: net section, shear-out, bearing.
 
-Nominal stresses of an eye of width W, bore D and thickness t, on a pin of diameter d, as if its
-link pulled with the largest force F of the case:
+The nominal stresses of an eye of width W, bore D and thickness t on a pin of diameter d. The
+largest force F of the case is assumed to pull along the shank:
 
     net section    F / (C_r 2 t b_eff),  b_eff = min(b, 4 t, 0.6 b F_u/F_y sqrt(D/b)), b = (W - D)/2
     shear-out      F / (2 L t),  L = sqrt(e^2 - (D/2 sin 40)^2) - D/2 cos 40
     bearing        F / (d t)
 
-A wide net section is not all used: stress gathers at the bore, and a lug breaks there before the
-rest has yielded. b_eff and C_r, which a loose pin lowers, are those of ASME BTH-1 (of a material
-without an ultimate strength with F_u = F_y, which is on the safe side). F / ((W - D) t) would be
-about half of that stress at W = 5 D.
+A wide net section is not fully used: the stress concentrates at the bore, and the lug breaks there
+before the rest has yielded. b_eff and C_r, which is lower for a loose pin, are those of ASME BTH-1.
+If the material has no ultimate strength, F_u = F_y is used, which is on the safe side. At W = 5 D,
+F / ((W - D) t) would be about half of this stress.
 
-The shear planes run along the force from the bore, 40 degrees off it, to the edge of the head, e
-from the centre of the bore; their length is e - D/2 cos 40 where that is straight. The stresses are
-compared with yield, in shear with yield over sqrt(3) (von Mises); yield as the strength in bearing
-is a convention. Neither the stress concentration at the bore nor a load across the link is in them.
+The shear planes are parallel to the force. They start at the bore, 40 degrees off the direction of
+the force, and end at the edge of the head, e from the centre of the bore; their length is
+e - D/2 cos 40 if the end of the head is straight. The stresses are compared with yield, in shear
+with yield over sqrt(3) (von Mises); yield as the strength in bearing is a convention. The stress
+concentration at the bore and loads across the shank are not included.
 
 Source: ASME BTH-1-2005, equations 3-45 to 3-51 (net section; by spreadsheets, docs/evidence.md),
 after D. Duerr, J. Struct. Eng. 132(2), 2006, 182-194; R. G. Budynas & J. K. Nisbett,
@@ -63,7 +64,7 @@ _LugCheck = tuple[CheckText, _Stress, Material, float | None, Rupture, str, str]
 
 
 def net_section_stress(force: float, ultimate_over_yield: float, eye: PlateEye) -> Work:
-    """The tension on the part of the net section that carries, Pa.
+    """Return the tensile stress on the effective part of the net section, Pa.
 
     force: N. ultimate_over_yield: F_u / F_y of the lug.
 
@@ -78,7 +79,7 @@ def net_section_stress(force: float, ultimate_over_yield: float, eye: PlateEye) 
 
 
 def shear_out_stress(force: float, eye: PlateEye) -> Work:
-    """The shear stress on the two planes by which the pin would push out a piece of the eye, Pa.
+    """Return the shear stress on the two planes along which the pin would shear out of the eye, Pa.
 
     Arguments and source as `net_section_stress`.
     """
@@ -92,7 +93,7 @@ def shear_out_stress(force: float, eye: PlateEye) -> Work:
 
 
 def bearing_stress(force: float, eye: PlateEye) -> Work:
-    """The bearing stress on the projected area in the bore, Pa; as `net_section_stress`."""
+    """Return the bearing stress on the projected area of the bore, Pa; as `net_section_stress`."""
     return work(
         "σ", force / (eye.bearer * eye.thickness), "stress", "{F} / ({d} × {t})",
         F=(force, "force"), d=(eye.bearer, "length"), t=(eye.thickness, "length"),
@@ -101,18 +102,18 @@ def bearing_stress(force: float, eye: PlateEye) -> Work:
 
 @check("lug", SHIGLEY_JOINTS, kind="hand", takes="loads")
 def lug_checks(_: CheckText, s: Situation) -> list[Margin]:
-    """Net section, shear-out and bearing of every loaded lug whose size is given, and the bearing
-    of the pin on its bushing.
+    """Return the margins of net section, shear-out and bearing of every loaded lug whose size is
+    given, and of the bearing of the pin on its bushing.
 
-    They are checked at the instant when the force across the pin is largest, taken along the shank
-    whatever its direction. The lug is as thick as its band is long.
+    The instant is that of the largest transverse force on the pin, which is assumed along the shank
+    whatever its direction. The thickness of the lug is the length of its band.
     """
     return [m for loaded in loaded_eyes(s) for m in _of_lug(s, loaded)]
 
 
 @check("lug, as required", SHIGLEY_JOINTS, kind="hand", takes="loads")
 def required_lug_checks(_: CheckText, s: Situation) -> list[Margin]:
-    """The checks of `lug_checks` that the study requires, for codes that make none of them."""
+    """Return the margins of `lug_checks` that the study requires, for codes that omit them."""
     checks = {m: x for x, methods in METHODS_BY_FORMULA.items() for m in methods}
     return [m for m in lug_checks(s) if (checks.get(m.method), m.level) in s.required]
 
@@ -145,12 +146,12 @@ def _of_lug(s: Situation, loaded: LoadedEye) -> list[Margin]:
 
 
 def _stress_in_bushing(force: float, eye: PlateEye) -> Work:
-    """The bearing stress of the pin on a bushing, Pa."""
+    """Return the bearing stress of the pin on a bushing, Pa."""
     return bearing_stress(force, replace(eye, bushed=False))
 
 
 def _passing(eye: PlateEye, dimension: str, stress: _Stress, margin: Margin) -> WorkQuantity | None:
-    """The dimension of an eye that would just pass a margin."""
+    """Return the dimension of an eye that would just pass; None if there is none."""
     allowable, factor, name = margin.allowable, margin.factor, DIMENSION_NAMES[dimension]
     if not allowable:
         return None

@@ -1,9 +1,10 @@
-"""The limit load and the ultimate load of lugs as margins: no collapse by plastic flow, and no
+"""Margins of the limit load and the ultimate load of lugs: no collapse by plastic flow, and no
 rupture, at ultimate load.
 
-The allowable of the first is the lower end of the bracket at the yield strength, which all of
-twenty bars that broke exceeded (docs/evidence.md); of the second, the largest load in finite strain
-up to the failure strain that the study states. The demand is the largest force along the shank.
+The allowable limit load is the lower end of the bracket at the yield strength; all of twenty bars
+tested to failure exceeded it (docs/evidence.md). The allowable ultimate load is the largest load in
+finite strain up to the failure strain that the study states. The demand is the largest pull along
+the shank.
 
 Source: 14 CFR 25.305(b) (no failure at ultimate load).
 """
@@ -38,7 +39,7 @@ ENDS = {
 @check("lug, limit load", "14 CFR 25.305", kind="collapse", takes="loads", level="ultimate",
        dimension="force", omits=COLLAPSE_OMITS)  # fmt: skip
 def lug_collapse(text: CheckText, s: Situation) -> list[Margin]:
-    """The largest force on every lug whose limit load was requested against that."""
+    """Return the margins of the pull on every lug whose limit load was requested."""
     limits = {limit.connection: limit for limit in s.lug_collapses}
     return [
         margin
@@ -51,7 +52,9 @@ def lug_collapse(text: CheckText, s: Situation) -> list[Margin]:
 @check("lug, ultimate load", "14 CFR 25.305", kind="collapse", takes="loads", level="ultimate",
        dimension="force", scatter=ULTIMATE_SCATTER, omits=ULTIMATE_OMITS)  # fmt: skip
 def lug_rupture(text: CheckText, s: Situation) -> list[Margin]:
-    """The largest force on every lug of known failure strain against the load that breaks it."""
+    """Return the margins of the pull against the ultimate load, for every lug whose metal has a
+    failure strain and whose limit load was requested.
+    """
     limits = {limit.connection: limit for limit in s.lug_collapses if limit.breaks_by}
     margins = []
     for loaded in loaded_eyes(s):
@@ -80,7 +83,7 @@ def _of_lug(text: CheckText, s: Situation, loaded: LoadedEye, limit: LugCollapse
 def _against(
     text: CheckText, s: Situation, loaded: LoadedEye, allowable: float, basis: str
 ) -> Margin:
-    """The margin of the largest force along a shank against a load, N."""
+    """Return the margin of the largest pull along a shank against an allowable load, N."""
     instant = int(loaded.axial.argmax())
     force, place = float(loaded.axial[instant]), place_of(s, loaded, instant)
     basis = "; ".join(x for x in (loaded.basis, basis) if x)

@@ -1,9 +1,9 @@
-"""Bending of lugs out of their plane, by forces along the pin and moments of their links: nominal
-stress beside the bore and where the shank is held, by statics of the link's force and moment.
+"""Out-of-plane bending of lugs by forces along the pin and moments of their links: the nominal
+stress beside the bore and at the held end of the shank, by statics of the link's force and moment.
 
-In axes u along the shank, z along the pin, and v across both, a section at x from the bore's centre
-has the moments M_u (torsion), M_v + x F_z (out of the plane) and M_z - x F_v (in the plane). Each
-is largest at one of the two sections.
+The axes are u along the shank, z along the pin, and v across both. A section at x from the centre
+of the bore has the moments M_u (torsion), M_v + x F_z (out of plane) and M_z - x F_v (in plane).
+Each moment is largest at one of these two sections.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pinbase.keys import lug_key
 
 STRUCTURE_NEED = "the share of each lug of the structure in forces along the pin and moments"
 MIN_SHARE = 1e-6  # of the largest force (times the pin's length): smaller loads are round-off
-MAX_LEFT = 1e-3  # of the forces along the pin, and of the couples, that nothing need react
+MAX_LEFT = 1e-3  # relative resultant of axial forces or couples that needs no reaction
 SERIES_TERMS = 20  # of Saint-Venant's series, whose terms fall with the fifth power of their number
 Shown = Callable[[int], Work]  # the work at an instant, by its number
 BENDING_TERM = "{N} / {A} + {M} / {W}"
@@ -40,7 +40,9 @@ FACE_FORMULA = f"√(({BENDING_TERM})² + 3 × ({{T}} / {{W_t}} + 1.5 × {{V}} /
     "the walls beside the bore, instability, a force along the pin that enters beside the bore.",
 )  # fmt: skip
 def lug_out_of_plane(text: CheckText, s: Situation) -> list[Margin]:
-    """The margins of lugs with a shank whose links have such loads; for others, what they lack."""
+    """Return the margins of lugs with out-of-plane loads; where the shank or its angle is missing,
+    what is missing.
+    """
     margins, lacking, bent = list[Margin](), list[str](), _bent(s)
     for k, lug in bent:
         angle = shank_angle(s, lug)
@@ -56,8 +58,8 @@ def lug_out_of_plane(text: CheckText, s: Situation) -> list[Margin]:
 
 
 def _bent(s: Situation) -> list[tuple[int, Lug]]:
-    """The lugs that have a force along the pin or a moment across it, with the numbers of their
-    loads.
+    """Return the lugs with a force along the pin or a moment transverse to it, and for each the
+    number of its loads.
     """
     least = MIN_SHARE * float(np.abs(s.loads.forces).max(initial=0.0))
     along = np.abs(s.loads.forces[..., 2]).max(axis=0, initial=0.0)
@@ -68,13 +70,13 @@ def _bent(s: Situation) -> list[tuple[int, Lug]]:
 
 
 def _moments(s: Situation) -> Floats:
-    """The moments of all links about the middles of their bands, (T, C, 3) N m."""
+    """Return the moments of all links about the middles of their bands, (T, C, 3) N m."""
     moments: Floats = np.broadcast_to(s.loads.moments, s.loads.forces.shape)
     return moments
 
 
 def _structure_reacts(s: Situation) -> bool:
-    """Whether lugs of a structure react a force along the pin, or a couple across it."""
+    """Whether the structure's lugs react a force along the pin or a transverse couple."""
     if s.clamps:
         return False
     forces, moments = s.loads.forces, _moments(s)
@@ -89,7 +91,7 @@ def _structure_reacts(s: Situation) -> bool:
 
 @dataclass(frozen=True)
 class PlateSection:
-    """A section of a plate, m, with a hole in the middle of its width."""
+    """The cross-section of a plate, m, with a hole in the middle of its width."""
 
     width: float
     thickness: float
@@ -97,7 +99,7 @@ class PlateSection:
 
     @property
     def area(self) -> float:
-        """m^2."""
+        """The area of the section, m^2."""
         return (self.width - self.hole) * self.thickness
 
     @property
@@ -107,12 +109,12 @@ class PlateSection:
 
     @property
     def modulus_out(self) -> float:
-        """The section modulus for bending out of it, m^3."""
+        """The section modulus for bending out of the plane of the plate, m^3."""
         return (self.width - self.hole) * self.thickness**2 / 6.0
 
     @cached_property
     def modulus_torsion(self) -> float:
-        """Torque over the largest shear stress, which is at the middle of the longer sides, m^3.
+        """The torque over the largest shear stress, m^3; this is at the middle of the longer sides.
 
         Source: Saint-Venant's series for a rectangle without a hole.
         """
@@ -135,7 +137,7 @@ class _Actions:
 
     @staticmethod
     def on(s: Situation, link: int, angle: Floats) -> _Actions:
-        """The actions of a link. angle: of its lug's shank, (T,) rad."""
+        """Return the actions of a link, by its number. angle: of its lug's shank, (T,) rad."""
         c, n = np.cos(angle), np.sin(angle)
 
         def turned(x: Floats) -> Floats:
@@ -145,7 +147,7 @@ class _Actions:
         return _Actions(turned(s.loads.forces[:, link]), turned(_moments(s)[:, link]))
 
     def at(self, x: float) -> Floats:
-        """The sizes of the moments about u, v and z in a section at x, (T, 3) N m."""
+        """Return the magnitudes of the moments about u, v and z in a section at x, (T, 3) N m."""
         out, across = x * self.force[:, 2], x * self.force[:, 1]
         u, v, z = self.moment.T
         return np.asarray(np.abs(np.stack([u, v + out, z - across], axis=1)))
@@ -154,7 +156,7 @@ class _Actions:
 def _of_lug(
     text: CheckText, s: Situation, lug: Lug, shank: Shank, actions: _Actions
 ) -> list[Margin]:
-    """The margins of the point of a lug with the largest nominal stress."""
+    """Return the margins at the point of a lug with the largest nominal stress."""
     eye, material = eye_of(s, lug), lug.material
     stress, show, where = _largest(eye, shank, actions)
     t = int(stress.argmax())
@@ -175,7 +177,7 @@ def _of_lug(
 
 
 def _largest(eye: PlateEye, shank: Shank, actions: _Actions) -> tuple[Floats, Shown, str]:
-    """The stress (T,), Pa, of the point with the largest one, its work, and where it is."""
+    """Return the stress (T,), Pa, at the point with the largest stress, its work, and its place."""
     beside = PlateSection(eye.width, eye.thickness, eye.hole)
     held = PlateSection(shank.width, eye.thickness)
     points = [(*_corner(beside, actions, 0.0), "beside the bore")]
@@ -184,7 +186,7 @@ def _largest(eye: PlateEye, shank: Shank, actions: _Actions) -> tuple[Floats, Sh
 
 
 def _corner(section: PlateSection, actions: _Actions, x: float) -> tuple[Floats, Shown]:
-    """The stress (T,), Pa, at the corners of a section, where no shear stress is."""
+    """Return the stress (T,), Pa, at the corners of a section, which have no shear stress."""
     N, moments = np.abs(actions.force[:, 0]), actions.at(x)
     A, W_in, W_out = section.area, section.modulus_in, section.modulus_out
     stress = N / A + moments[:, 2] / W_in + moments[:, 1] / W_out
@@ -200,8 +202,8 @@ def _corner(section: PlateSection, actions: _Actions, x: float) -> tuple[Floats,
 
 
 def _face(section: PlateSection, actions: _Actions, x: float) -> tuple[Floats, Shown]:
-    """The von Mises stress (T,), Pa, at the middle of the sides of a section, each with the largest
-    shear stress by torsion.
+    """Return the von Mises stress (T,), Pa, at the middles of the sides of a section; the largest
+    shear stress of torsion is assumed at each.
     """
     N, moments = np.abs(actions.force[:, 0]), actions.at(x)
     A, W_t = section.area, section.modulus_torsion

@@ -7,13 +7,13 @@
     transverse       P_tru = k_tru F_tux D t       P_try = k_try F_tyx D t
     oblique          (R_a^1.6 + R_tr^1.6)^0.625 <= 1
 
-R_a and R_tr are the axial and the transverse part of the force over what the lug carries of each.
-The efficiency factors are those of the method's figures, which no formula gives: the study states
-them. They hold for the width over the bore at which they were read: what would just pass is named
-as a thickness.
+R_a and R_tr are the axial and the transverse component of the force over the allowable load in each
+direction. The efficiency factors are read off the figures of the method, for which there is no
+formula; the study states them. They hold only for the ratio of width to bore for which they were
+read. The dimension that would just pass is therefore a thickness.
 
-The study has one ultimate and one yield strength of a material; those across the grain (F_tux,
-F_tyx) are to be stated there where they are lower.
+A study has one ultimate and one yield strength of a material. If the strengths across the grain
+(F_tux, F_tyx) are lower, they are to be stated instead.
 
 Source: M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8, pp. 329-336, after Melcon & Hoblit,
 whose paper was not read.
@@ -46,12 +46,12 @@ AXIAL_KEYS, TRANSVERSE_KEYS = ("k_br", "k_t"), ("k_tru",)
 
 
 def shear_bearing_load(k_br: float, ultimate: float, eye: PlateEye) -> Work:
-    """P_bru, N. ultimate: strength across the grain, Pa."""
+    """Return P_bru, N. ultimate: ultimate strength across the grain, Pa."""
     return _on_bearing_area("P_bru", "k_br", eye, k_br, "F_tu", ultimate)
 
 
 def tension_load(k_t: float, ultimate: float, eye: PlateEye) -> Work:
-    """P_tu, N. ultimate: strength along the grain, Pa."""
+    """Return P_tu, N. ultimate: ultimate strength along the grain, Pa."""
     area = (eye.width - eye.hole) * eye.thickness
     return work(
         "P_tu", k_t * ultimate * area, "force", "{k_t} × {F_tu} × ({W} − {D}) × {t}",
@@ -61,7 +61,10 @@ def tension_load(k_t: float, ultimate: float, eye: PlateEye) -> Work:
 
 
 def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -> Work:
-    """P_y, N, of the lower ultimate load, N. yields, ultimate: strengths across the grain, Pa."""
+    """Return P_y, N, from the lower ultimate load, N.
+
+    yields, ultimate: strengths across the grain, Pa.
+    """
     return work(
         "P_y", C * yields / ultimate * ultimate_load, "force", "{C} × ({F_ty} / {F_tu}) × {P_u}",
         C=(C, "1"), F_ty=(yields, "stress"), F_tu=(ultimate, "stress"),
@@ -70,7 +73,7 @@ def yield_load(ultimate_load: float, C: float, yields: float, ultimate: float) -
 
 
 def bushing_yield_load(crushes: float, eye: PlateEye) -> Work:
-    """P_y of a bushing, N. crushes: its yield strength in compression, Pa."""
+    """Return P_y of a bushing, N. crushes: its yield strength in compression, Pa."""
     return work(
         "P_y", BUSHING_BEARING * crushes * eye.pin * eye.thickness, "force",
         "1.85 × {F_cy} × {D_p} × {t}",
@@ -79,17 +82,17 @@ def bushing_yield_load(crushes: float, eye: PlateEye) -> Work:
 
 
 def transverse_load(k_tru: float, ultimate: float, eye: PlateEye) -> Work:
-    """P_tru, N. ultimate: strength across the grain, Pa."""
+    """Return P_tru, N. ultimate: ultimate strength across the grain, Pa."""
     return _on_bearing_area("P_tru", "k_tru", eye, k_tru, "F_tu", ultimate)
 
 
 def transverse_yield_load(k_try: float, yields: float, eye: PlateEye) -> Work:
-    """P_try, N. yields: yield strength across the grain, Pa."""
+    """Return P_try, N. yields: yield strength across the grain, Pa."""
     return _on_bearing_area("P_try", "k_try", eye, k_try, "F_ty", yields)
 
 
 def oblique_ratio(axial: Floats | float, transverse: Floats | float) -> Floats:
-    """(R_a^1.6 + R_tr^1.6)^0.625 of the ratios of both parts of a force."""
+    """Return (R_a^1.6 + R_tr^1.6)^0.625 for the ratios of the two components of a force."""
     n = OBLIQUE_EXPONENT
     return np.asarray((np.power(axial, n) + np.power(transverse, n)) ** (1.0 / n))
 
@@ -101,20 +104,23 @@ _of_lugs = partial(
 
 @_of_lugs("Melcon-Hoblit shear-bearing", NIU)
 def shear_bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye whose k_br is given against shear-out and bearing."""
+    """Return the margins of the axial force in shear-bearing, for eyes whose k_br is given."""
     return _along(text, s, "k_br", shear_bearing_load)
 
 
 @_of_lugs("Melcon-Hoblit tension", NIU)
 def tension(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye whose k_t is given against the net section."""
+    """Return the margins of the axial force on the net section, for eyes whose k_t is given."""
     return _along(text, s, "k_t", tension_load)
 
 
 def _along(
     text: CheckText, s: Situation, factor: str, load: Callable[[float, float, PlateEye], Work]
 ) -> list[Margin]:
-    """The axial force on every eye of which an efficiency factor, by name, is given."""
+    """Return the margins of the axial force on every eye for which an efficiency factor is given.
+
+    factor: the name of the efficiency factor.
+    """
     margins = []
     for x in _pulled(s):
         k, ultimate = getattr(s.factors_of(x.connection), factor), x.lug.ultimate_strength
@@ -129,7 +135,9 @@ def _along(
 
 @check("Melcon-Hoblit yield", NIU, kind="clause", takes="loads", dimension="force", omits=NIU_OMITS)
 def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The axial force on every eye of which k_br or k_t is given against its yield load."""
+    """Return the margins of the axial force against the yield load, for eyes whose k_br or k_t is
+    given.
+    """
     margins = []
     for x in _pulled(s):
         k, strengths = s.factors_of(x.connection), strengths_of(x.lug)
@@ -153,8 +161,8 @@ def lug_yield(text: CheckText, s: Situation) -> list[Margin]:
 @check("Melcon-Hoblit bushing", NIU, kind="clause", takes="loads", dimension="force",
        omits=NIU_OMITS)  # fmt: skip
 def bushing_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every bushed eye of which k_br or k_t is given against the yield load of its
-    bushing, which the manual's at ultimate load (assess.clauses.affdl_lugs) is below.
+    """Return the margins of the force against the yield load of the bushing, for bushed eyes whose
+    k_br or k_t is given. The manual's ultimate load (assess.clauses.affdl_lugs) is lower.
     """
     margins = []
     for x in loaded_eyes(s):
@@ -171,19 +179,22 @@ def bushing_yield(text: CheckText, s: Situation) -> list[Margin]:
 
 @_of_lugs("Melcon-Hoblit transverse", NIU)
 def transverse(text: CheckText, s: Situation) -> list[Margin]:
-    """The force across the shank of every eye against k_tru."""
+    """Return the margins of the force across the shank of every eye against P_tru."""
     return _across(text, s, "k_tru", "ultimate")
 
 
 @check("Melcon-Hoblit transverse yield", NIU, kind="clause", takes="loads", dimension="force",
        omits=NIU_OMITS)  # fmt: skip
 def transverse_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The force across the shank of every eye against k_try."""
+    """Return the margins of the force across the shank of every eye against P_try."""
     return _across(text, s, "k_try", "yield")
 
 
 def _across(text: CheckText, s: Situation, key: str, which: str) -> list[Margin]:
-    """which: the strength that the factor multiplies."""
+    """Return the margins of the force across the shank of every eye.
+
+    key: the name of the efficiency factor. which: the name of the strength that it multiplies.
+    """
     margins = []
     for x in loaded_eyes(s):
         k = getattr(s.factors_of(x.connection), key)
@@ -204,7 +215,7 @@ def _across(text: CheckText, s: Situation, key: str, which: str) -> list[Margin]
 @check("Melcon-Hoblit oblique", NIU, kind="clause", takes="loads", level="ultimate",
        dimension=RATIO_DIMENSION, omits=NIU_OMITS)  # fmt: skip
 def oblique(text: CheckText, s: Situation) -> list[Margin]:
-    """Both parts of an oblique force together on every eye, against 1."""
+    """Return the margins of the interaction of both components of an oblique force on every eye."""
     eyes = [x for x in loaded_eyes(s) if (x.axial * x.transverse).any()]
     return [_oblique(text, s, x) for x in eyes]
 
@@ -222,7 +233,7 @@ def _oblique(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
 @check("Melcon-Hoblit oblique yield", NIU, kind="clause", takes="loads", dimension=RATIO_DIMENSION,
        omits=NIU_OMITS)  # fmt: skip
 def oblique_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The same at yield, of every eye of which k_br or k_t is given."""
+    """Return the margins of the interaction at yield, for eyes whose k_br or k_t is given."""
     return [
         _oblique_yield(text, s, x)
         for x in loaded_eyes(s)
@@ -244,8 +255,10 @@ def _oblique_yield(text: CheckText, s: Situation, x: LoadedEye) -> Margin:
 def _combined(
     text: CheckText, s: Situation, x: LoadedEye, axial: float, works: tuple[Work, ...]
 ) -> Margin:
-    """The margin of both parts of a force. axial: what the eye carries along its shank, N; works:
-    of the loads that it carries, that across its shank the last.
+    """Return the margin of the interaction of both components of a force.
+
+    axial: allowable load of the eye along its shank, N. works: the works of all allowable loads;
+    the last is that across the shank.
     """
     across = works[-1].result.value
     used = oblique_ratio(x.axial / axial, x.transverse / across)
@@ -260,12 +273,12 @@ def _combined(
 
 
 def _pulled(s: Situation) -> list[LoadedEye]:
-    """The eyes that are pulled along their shanks at any instant."""
+    """Return the eyes that are pulled along their shanks at any instant."""
     return [x for x in loaded_eyes(s) if x.axial.any()]
 
 
 def _axial_given(s: Situation, x: LoadedEye) -> bool:
-    """Whether the study gives any of the efficiency factors for pulls."""
+    """Whether the study gives any efficiency factor for axial pull."""
     return any(getattr(s.factors_of(x.connection), key) is not None for key in AXIAL_KEYS)
 
 

@@ -2,9 +2,10 @@
 
     M = P/2 (t_1/2 + g + gamma t_2/4)      against F_b W
 
-The pressure of a pin that bends peaks at the faces of the middle lug, which shortens the arm of its
-moment: gamma is the part of t_2/4 that is left, read off a figure over the size of the lug's head
-and its share of the load; the study states it. With gamma = 1 bearing is even.
+The pressure of a bent pin peaks at the faces of the middle lug, which shortens the arm of its
+moment. gamma is the remaining fraction of t_2/4. It is read off a figure as a function of the size
+of the lug's head and its share of the load, and stated by the study. With gamma = 1 the bearing
+pressure is even.
 
 Source: M. C. Y. Niu, Airframe Stress Analysis and Sizing, 9.8, pp. 329-336, after Melcon & Hoblit,
 whose paper was not read.
@@ -27,7 +28,9 @@ GAMMA_NEEDED = "symmetrical double shear, with factors.gamma of the middle lug a
 @check("Melcon-Hoblit pin bending", NIU, kind="clause", takes="statics", level="ultimate",
        dimension="moment", omits=PIN_OMITS)  # fmt: skip
 def peaked_bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The moment of pressure that peaks at the faces of the middle lug, if gamma is given."""
+    """Return the margin of the moment with pressure peaks at the faces of the middle lug, if gamma
+    is given.
+    """
     if not _given(s) or not s.loaded_across:
         return []
     bands = peaking_bands(s)
@@ -62,7 +65,9 @@ def peaked_bending(text: CheckText, s: Situation) -> list[Margin]:
 
 
 def peaking_bands(s: Situation) -> tuple[Band, Band, Band] | None:
-    """The bands along the pin if gamma of the middle one in double shear is given, and no other."""
+    """Return the three bands along a pin in double shear if gamma is given for the middle one only;
+    else None.
+    """
     bands = sorted((s.pin.band(name) for name in s.loads.surfaces), key=lambda b: b.z0)
     if len(bands) != 3 or set(_given(s)) != {bands[1].name} or not in_double_shear(s):
         return None
@@ -70,12 +75,14 @@ def peaking_bands(s: Situation) -> tuple[Band, Band, Band] | None:
 
 
 def _given(s: Situation) -> dict[str, float]:
-    """gamma of the lugs that state it, by connection."""
+    """Return gamma of the lugs for which it is given, by connection."""
     return {name: k.gamma for name, k in s.lug_factors.items() if k.gamma is not None}
 
 
 def peaked_moment(force: float, first: Band, middle: Band, last: Band, gamma: float) -> Work:
-    """M, N m, of a force on the middle lug, N; the thicker outer lug and the wider gap count."""
+    """Return M, N m, for a force on the middle lug, N; the thicker outer lug and the wider gap
+    count.
+    """
     t_1, g = outer_and_gap(first, middle, last)
     value = force / 2.0 * (t_1 / 2.0 + g + gamma * middle.length / 4.0)
     return work(

@@ -2,15 +2,15 @@
 
     P_bru = F_bru d t       at the ultimate factor times the special factor
 
-F_bru is the ultimate bearing strength of the softest material that bears: of the pin, and of the
-lug or its bushing. The special factor stands instead of the fitting factor if that is less, as only
-the highest one counts (25.619). The study states it: 25.623 gives no number for parts with a
-clearance that pound or vibrate; 25.693 asks for 3.33 in joints of control systems that turn, 2.0 in
-cable systems, except in ball and roller bearings.
+F_bru is the lowest ultimate bearing strength of the materials in contact: the pin, and the lug or
+its bushing. Only the highest of the special factor and the fitting factor applies (25.619). The
+study states the special factor: 25.623 gives no number for parts with clearance that are subject to
+pounding or vibration; 25.693 requires 3.33 in joints of control systems with angular motion and 2.0
+in cable systems, except in ball and roller bearings.
 
-Source: 14 CFR 25.619, 25.623 and 25.693. Whether the 3.33 of 25.693 multiplies the 1.5 of 25.303,
-as 25.619 says of special factors and as it does here, or is all there is on limit load, readers
-differ: here it is on the safe side.
+Source: 14 CFR 25.619, 25.623 and 25.693. Readers differ whether the 3.33 of 25.693 multiplies the
+1.5 of 25.303, as 25.619 says of special factors, or is the only factor on limit load. Here it
+multiplies, which is on the safe side.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SPECIAL_OMITS = (
        level="ultimate", dimension="force",
        omits=SPECIAL_OMITS)  # fmt: skip
 def special_bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The force on every lug whose special factor is given against what its softest metal bears."""
+    """Return the margins in bearing of every lug whose special factor is given."""
     of_lugs = ((lug, s.factors_of(lug.connection).bearing) for lug in s.lugs)
     known = ((lug, x) for lug, x in of_lugs if x and lug.connection in s.loads.surfaces)
     return [_margin(text, s, lug, x) for lug, x in known]

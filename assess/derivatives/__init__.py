@@ -1,1 +1,1 @@
-"""Derivatives of the largest stress: with respect to shape, loads and material."""
+"""Derivatives of the largest stress with respect to shape, loads and material."""

@@ -1,16 +1,16 @@
-"""Derivatives of the largest von Mises stress of a pin with respect to all that it depends on.
+"""Derivatives of the largest von Mises stress of a pin with respect to shape, loads and material.
 
 At the governing point, instant and angle the stress is a function J of the nodes' coordinates x, of
 their displacements u and of the tractions t. With K u = f and the adjoint l, K l = dJ/du,
 
     dJ/dp = J,x x' + J,t t' + l^T f' - (l^T K u),x x'
 
-for any parameter p, so that one solution l of each harmonic, with the stiffness of the stress
-itself, serves all of them. Nodes move by x': on the outline as given by
-geometry.mesh.outline_motion, inside harmonically. The maximum moves along the surface, over
-the circumference and in time too, but there it is stationary, or held by the edge of an excluded
-zone, which x' follows. So this is the derivative of the maximum on the moved mesh, to round-off;
-its error is that of the mesh.
+for any parameter p. One adjoint solution l of each harmonic, with the stiffness matrix of the
+stress solution, therefore serves all parameters. Nodes move by x': on the outline as given by
+geometry.mesh.outline_motion, inside by harmonic extension. The location of the maximum also moves,
+along the surface, over the circumference and in time. This does not change the derivative, because
+the maximum is stationary there, or is at the edge of an excluded zone, which x' follows. The result
+is the derivative of the maximum on the moved mesh, to round-off; its error is that of the mesh.
 
 Source: Haftka & Gurdal, Elements of Structural Optimization, ch. 7 (adjoint method); Choi & Kim,
 Structural Sensitivity Analysis and Optimization 1, ch. 6 (shape).
@@ -64,7 +64,7 @@ EXPONENT_STEP = 1e-4  # of a pressure's exponent
 
 
 def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivatives:
-    """The derivatives of the maximum at the only instant of the loads.
+    """Return the derivatives of the maximum; the loads must have a single instant.
 
     Raises: SolveError.
     """
@@ -72,31 +72,31 @@ def derivatives(solved: SolvedCase, dimensions: Iterable[Dimension]) -> Derivati
 
 
 class Adjoint:
-    """The adjoint solution at the governing point and angle of a solved case.
+    """The adjoint solution at the governing point and angle of a solved load case.
 
     top: the maximum.
-    waves: the parts of harmonics that act there.
-    among: (S,) points that may govern, all by default.
-    like: another adjoint on the same mesh, whose matrices it shares.
+    waves: the harmonic components of the load that contribute to the stress there.
+    among: (S,) mask of the points that may govern, all by default.
+    reused: another adjoint solution on the same mesh, whose matrices this one reuses.
     """
 
     def __init__(
-        self, solved: SolvedCase, among: Mask | None = None, like: Adjoint | None = None
+        self, solved: SolvedCase, among: Mask | None = None, reused: Adjoint | None = None
     ) -> None:
         self.solved = solved
         self.fields = solved.solution.fields
         mesh = solved.solution.mesh
-        shared_model = like and like.model
+        shared_model = reused and reused.model
         self.model: HarmonicModel = shared_model or HarmonicModel(
             solved.pin, mesh, solved.material, solved.clamps
         )
-        if like and like.solved.zones == solved.zones:
-            self.outline_nodes, self.interior = like.outline_nodes, like.interior
+        if reused and reused.solved.zones == solved.zones:
+            self.outline_nodes, self.interior = reused.outline_nodes, reused.interior
         self.space, self.outline = self.model.space, self.model.outline
         self.around = reader(self.fields, solved.loads, solved.material.poisson_ratio)
         self.read_at = self.around.fields
-        # The governing point, instant and angle; then what acts there, how its stress is read, and
-        # the adjoint of that.
+        # Find the governing point, instant and angle; then the waves that act there, the way in
+        # which stress is read there, and the adjoint solution.
         outside = self.read_at.outside(solved.zones)
         self.top = self.around.top(outside if among is None else outside & among)
         self.waves, self.weight = waves_of(self.fields_at, solved.loads, self.top)
@@ -113,7 +113,10 @@ class Adjoint:
 
     @property
     def _jumping(self) -> Floats:
-        """Tractions (E, 3, 3, K) of all unit loads: edges are separated where any of them jumps."""
+        """Tractions (E, 3, 3, K), Pa, of the waves and of all other unit loads.
+
+        Smoothing of stress stops at an edge where any of these tractions jumps.
+        """
         loads, out = self.fields.loads, [self.traction]
         acting = {load for wave in self.waves for load in wave.amounts}
         for n in sorted({load.n for load in loads}):
@@ -124,7 +127,7 @@ class Adjoint:
 
     @cached_property
     def u(self) -> Floats:
-        """Displacements (N, 3, K), m, of the waves."""
+        """Displacements (N, 3, K), m, of the nodes in each wave."""
         rows = points_of_nodes(self.outline, len(self.space.nodes))
         index = {load: k for k, load in enumerate(self.fields.loads)}
         amounts = np.zeros((len(index), len(self.waves)))
@@ -135,7 +138,9 @@ class Adjoint:
 
     @cached_property
     def _harmonics(self) -> list[tuple[int, tuple[UnitLoad, ...], Floats, Ints]]:
-        """The waves by harmonic: n, loads (L), amounts in the waves (L, W), waves' numbers."""
+        """The waves grouped by harmonic: n, its unit loads (L), their amounts in each of its waves
+        (L, W), and the numbers of these waves (W,).
+        """
         out = []
         for n in np.unique(self.n):
             here = np.flatnonzero(self.n == n)
@@ -147,9 +152,9 @@ class Adjoint:
     def _forces(
         self, pin: Pin, outline: Outline, integrals: Floats | None = None, moved: bool = False
     ) -> tuple[Floats, Floats]:
-        """The forces of the waves on the unknowns (3 N, K), and their tractions (E, 3, 3, K).
+        """Return the generalised forces of the waves (3 N, K) and their tractions (E, 3, 3, K).
 
-        moved: leave out the forces of plain pressures, which `_plain_pressures` covers.
+        moved: whether to leave out the forces of plain pressures, which `_plain_pressures` covers.
         """
         forces = np.zeros((self.space.unknowns, len(self.waves)))
         tractions = np.zeros((*outline.nodes.shape, 3, len(self.waves)))
@@ -163,7 +168,9 @@ class Adjoint:
 
     @cached_property
     def _plain_pressures(self) -> tuple[Ints, Floats]:
-        """Edges (E,) under plain pressures, and adjoint work per nodal weight, (E, 3)."""
+        """The numbers of the edges under plain pressures, (E,), and the adjoint work of these
+        pressures per nodal weight, (E, 3).
+        """
         by_edge = np.zeros(self.outline.nodes.shape)
         for n, loads, amounts, here in self._harmonics:
             if not _plain(n, loads):
@@ -179,9 +186,9 @@ class Adjoint:
         return rows, by_edge[rows]
 
     def of_loads(self, k: int, loads: Sequence[UnitLoad]) -> Floats:
-        """The stress, Pa, that one more of each unit load (L,) adds.
+        """Return the stress (L,), Pa, that one unit of each of some unit loads adds.
 
-        They are of the harmonic and part of wave k.
+        loads: unit loads (L,) of the harmonic and part of wave k.
         """
         wave = self.waves[k]
         forces, traction = applied(self.model, self.solved.pin, self.outline, wave.n, loads)
@@ -193,7 +200,7 @@ class Adjoint:
 
     @cached_property
     def places(self) -> Floats:
-        """r, z and radius of the zones, (Z, 3), m."""
+        """The r, z and radius of each excluded zone, (Z, 3), m."""
         return np.array([[p.r, p.z, p.radius] for p in self.solved.zones]).reshape(-1, 3)
 
     @cached_property
@@ -206,18 +213,18 @@ class Adjoint:
         material: Material | None = None,
         point: ReadingPoint | None = None,
     ) -> float:
-        """The von Mises stress to first order, for the displacements as they are.
+        """Return the von Mises stress, Pa, to first order, with the displacements unchanged.
 
-        state, material, point: that may differ from those of the solution.
+        state, material, point: may differ from those of the solution.
         """
         u = self.u[self.point.nodes]
         stress = (point or self.point).stress(material or self.solved.material, state, self.n, u)
         return float(sum(c.weight @ stress[:, k] for k, c in enumerate(self.waves)))
 
     def by_exponent(self) -> float:
-        """The derivative, Pa, by the exponent of pressure at the edge of a lug.
+        """Return the derivative, Pa, by the exponent of the pressure at the edge of a lug.
 
-        It is zero unless stress is extrapolated to that edge.
+        The derivative is zero unless the stress is extrapolated to that edge.
         """
         point = self.point
         if not isinstance(point, Continued):
@@ -230,7 +237,7 @@ class Adjoint:
         return float(rate(other, EXPONENT_STEP))
 
     def _solve(self) -> Floats:
-        """The adjoint displacements (3 N, K)."""
+        """Return the adjoint displacements (3 N, K), one column for each wave."""
         # The reading is linear in the displacements of its nodes: unit displacements give dJ/du.
         L, K = len(self.point.nodes), len(self.waves)
         unit = np.eye(3 * L).reshape(L, 3, 3 * L)
@@ -247,7 +254,7 @@ class Adjoint:
         return out
 
     def derivatives(self, dimensions: tuple[Dimension, ...]) -> Derivatives:
-        """The derivatives by dimensions, loads and material."""
+        """Return the derivatives by dimensions, loads and material."""
         by_dimension, without = self.by_dimension(dimensions)
         top, solved = self.top, self.solved
         r, z = (float(x) for x in self.read_at.points[top.point])
@@ -268,7 +275,9 @@ class Adjoint:
     def by_dimension(
         self, dimensions: tuple[Dimension, ...]
     ) -> tuple[dict[str, float], dict[str, str]]:
-        """Derivatives, Pa/m, by dimension, and the reasons why others have none."""
+        """Return the derivatives, Pa/m, by key of the dimension, and for each dimension without a
+        derivative the reason.
+        """
         motions: list[NodeMotion] = []
         without = {}
         for dimension in dimensions:
@@ -280,7 +289,7 @@ class Adjoint:
 
     @cached_property
     def outline_nodes(self) -> OutlineNodes:
-        """The outline's nodes of the mesh."""
+        """The nodes on the outline of the mesh."""
         reaches = [Reach((p.r, p.z), p.radius) for p in self.solved.zones]
         return OutlineNodes(self.solved.solution.mesh, self.solved.pin, reaches)
 
@@ -290,10 +299,10 @@ class Adjoint:
         return Interior(self.space, self.outline_nodes.rows)
 
     def by_motions(self, motions: Sequence[NodeMotion]) -> dict[str, float]:
-        """Derivatives, Pa/m, by motions of the outline, by key."""
+        """Return the derivatives, Pa/m, by the key of each motion of the outline."""
         if not motions:
             return {}
-        # The rate of l^T K u per coordinate of every node, found once for all motions.
+        # The derivative of l^T K u by the coordinates of every node, computed once for all motions.
         gradient = sum(
             shape_gradient(self.space, self._D, c.n, self._unknowns(k), self._lambda[:, k])
             for k, c in enumerate(self.waves)
@@ -311,11 +320,11 @@ class Adjoint:
         return out
 
     def _direct(self, motion: NodeMotion, velocity: Floats, grown: Floats | None) -> float:
-        """The direct part of a derivative, with displacements as they are.
+        """Return the direct part of a derivative, with the displacements unchanged.
 
-        It is by forces, tractions and the reading.
+        This part comes from the forces, the tractions and the place where stress is read.
         velocity: (N, 2) of the nodes.
-        grown: (N,) rate of the shape functions' integrals, None without body loads.
+        grown: (N,) rate of the integrals of the shape functions; None without body loads.
         """
         values = []
         for x, pin in zip(DIFFERENCE_STEPS, motion.pins, strict=True):
@@ -332,14 +341,14 @@ class Adjoint:
 
     @cached_property
     def _zone_nodes(self) -> list[int]:
-        """The node at each zone."""
+        """The number of the node nearest to the centre of each zone."""
         nodes = self.space.nodes
         return [int(np.hypot(*(nodes - place[:2]).T).argmin()) for place in self.places]
 
     def _places_at(self, pin: Pin, step: float, velocity: Floats) -> Floats:
-        """The zones on a pin that is moved, (Z, 3), m.
+        """Return the zones (r, z, radius) on a pin with moved nodes, (Z, 3), m.
 
-        Their radii are proportional to the diameter there, or end where the next fillet begins.
+        The radius of a zone is proportional to the diameter there, or limited by the next fillet.
         """
         out, zones = self.places.copy(), self.solved.zones
         out[:, :2] += step * velocity[self._zone_nodes]
@@ -359,12 +368,12 @@ class Adjoint:
         return elasticity(self.solved.material)
 
     def _unknowns(self, k: int) -> Floats:
-        """The unknowns p, m, w (3 N,) of wave k."""
+        """Return the unknowns p, m, w of wave k, (3 N,)."""
         U, V, W = self.u[:, :, k].T
         return np.stack([(U + V) / 2.0, (U - V) / 2.0, W], axis=1).ravel()
 
     def by_poisson(self) -> float:
-        """The derivative by Poisson's ratio, Pa."""
+        """Return the derivative by Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
         step = min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))
@@ -380,7 +389,7 @@ class Adjoint:
         return float(rate(lambda x: np.array(self.read(self.state, other(x))), step)) - against
 
     def by_density(self) -> float:
-        """The derivative by density, Pa/(kg/m^3)."""
+        """Return the derivative by density, Pa/(kg/m^3)."""
         density = self.solved.material.density
         if not density:
             return 0.0
@@ -393,5 +402,5 @@ class Adjoint:
 
 
 def _plain(n: int, loads: Iterable[UnitLoad]) -> bool:
-    """Whether loads of a harmonic are pressures that do not depend on the pin's shape."""
+    """Whether all loads of harmonic n are pressures that do not depend on the pin's shape."""
     return n > 1 and all(load.parts for load in loads)

@@ -1,4 +1,4 @@
-"""The contribution of loads to the von Mises stress at the governing point, to first order."""
+"""The contribution of each load to the von Mises stress at the governing point, to first order."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ By = dict[tuple[str, str], float]
 
 @dataclass(frozen=True)
 class Wave:
-    """The part of one harmonic that varies as cos psi (part 0) or sin psi (1) at an angle.
+    """One harmonic's part that varies as a cosine (part 0) or as a sine (part 1) about the
+    governing angle.
 
-    amounts: of unit loads.
-    weight: (6,) derivative of von Mises stress by its stress components.
+    amounts: the amount of each unit load.
+    weight: (6,) derivative of the von Mises stress by the stress components of this part.
     """
 
     n: int
@@ -37,10 +38,10 @@ class Wave:
 def waves_of(
     at: dict[UnitLoad, Floats], loads: PinLoads, top: Crest
 ) -> tuple[tuple[Wave, ...], Floats]:
-    """The waves that act at the governing angle, and the gradient (6,) of von Mises stress there.
+    """Return the waves that act at the governing angle, and the gradient (6,) of the von Mises
+    stress there by its components. Waves without an amount are left out.
 
-    at: stress (6,), Pa, of each unit load at the governing point. Waves that add nothing are left
-    out.
+    at: stress (6,), Pa, of each unit load at the governing point.
     """
     acting = loads.coefficients()
     # Loads by harmonic and by the part that varies as cosine or sine at the governing angle.
@@ -63,15 +64,18 @@ def waves_of(
 
 
 def rotated(n: int, both: Floats, angle: float) -> Floats:
-    """The cosine and the sine part (2, ..), at an angle (rad), of phases (2, ..) of harmonic n."""
+    """Return the cosine and the sine part, (2, ..), about an angle (rad), of the two phases (2, ..)
+    of harmonic n.
+    """
     c, s = np.cos(n * angle), np.sin(n * angle)
     return np.asarray(np.stack([both[0] * c + both[1] * s, both[0] * s - both[1] * c]))
 
 
 def von_mises_gradient(stress: Floats) -> Floats:
-    """The gradient (6,) of von Mises stress by stress (6,), Pa; zero for no stress.
+    """Return the gradient (6,) of the von Mises stress by the stress components; zero without
+    stress.
 
-    Components are rr, tt, zz, tz, rz, rt.
+    stress: (6,) Pa, components rr, tt, zz, tz, rz, rt.
     """
     normal, shear = stress[:3], stress[3:]
     deviator = normal - normal.mean()
@@ -82,18 +86,18 @@ def von_mises_gradient(stress: Floats) -> Floats:
 def by_loads(
     at: dict[UnitLoad, Floats], loads: PinLoads, weight: Floats, top: Crest
 ) -> tuple[By, By]:
-    """Derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis.
+    """Return the derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis.
 
-    Only loads that were solved in any case have one.
+    A load has a derivative only if all the unit loads that it needs were solved.
     at: as in `waves_of`.
-    weight: (6,) gradient.
+    weight: (6,) gradient of the von Mises stress.
     """
     derivatives: tuple[By, By] = {}, {}
     before = loads.coefficients()
     for kind, vectors in enumerate((loads.forces, loads.moments)):
         step = FORCE_STEP * (float(np.abs(vectors).max()) or 1.0)
         for c, surface in enumerate(loads.surfaces):
-            # A cosine pressure without a force has no direction, so no derivative.
+            # A cosine pressure without a force has no direction and therefore no derivative.
             if loads.distribution == "cosine" and not loads.forces[0, c, :2].any():
                 continue
             for a, axis in enumerate(AXIS_NAMES):
@@ -112,19 +116,18 @@ def _of_change(
     change: tuple[int, Floats],
     times: float,
 ) -> Floats:
-    """The change of von Mises stress, Pa, by `times` more of a force (0) or moment (1).
-
-    NaN where a unit load that is needed was not solved.
+    """Return the change of the von Mises stress, Pa, when `times` the vectors of a change are added
+    to the forces (kind 0) or to the moments (kind 1); NaN if a needed unit load was not solved.
     """
     (weight, angle), (kind, one), (loads, before) = where, change, base
     if kind:
-        more = replace(loads, moments=loads.moments + times * one)
+        changed = replace(loads, moments=loads.moments + times * one)
     else:
-        more = replace(loads, forces=loads.forces + times * one)
-    now, total = more.coefficients(), np.zeros(6)
+        changed = replace(loads, forces=loads.forces + times * one)
+    after, total = changed.coefficients(), np.zeros(6)
     none = np.zeros((1, 2))
-    for load in dict.fromkeys([*now, *before]):
-        parts = rotated(load.n, now.get(load, none)[0] - before.get(load, none)[0], angle)
+    for load in dict.fromkeys([*after, *before]):
+        parts = rotated(load.n, after.get(load, none)[0] - before.get(load, none)[0], angle)
         if load not in at:
             total += np.nan if parts.any() else 0.0
             continue

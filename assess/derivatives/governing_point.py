@@ -1,4 +1,4 @@
-"""The reading of stress at the governing point, from its number among a section's points."""
+"""The way in which stress is read at the governing point, found from the number of the point."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from pinbase.arrays import Floats
 def point_of(
     model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
 ) -> ReadingPoint:
-    """The reading point of a number (fea.harmonic.stress_recovery: Reading).
+    """Return the reading point with a number as in fea.harmonic.stress_recovery: Reading.
 
-    Where lugs press on the pin, numbers are those of fea.harmonic.free_surface: SurfacePoints.
+    Where lugs press on the pin, the numbers are those of fea.harmonic.free_surface: SurfacePoints.
     traction: (E, 3, 3, K) Pa.
     """
     fields, pressed = solved.solution.fields, solved.loads.pressed
@@ -56,7 +56,7 @@ def point_of(
 def _of_section(
     model: HarmonicModel, solved: SolvedCase, traction: Floats, number: int
 ) -> ReadingPoint:
-    """The reading point of a number among the points of a section."""
+    """Return the reading point with a number among the points of a section."""
     space, outline, fields = model.space, model.outline, solved.solution.fields
     # The order of points is that of Reading: skin, inner nodes, rims of zones, jumps.
     if number < fields.skin:
@@ -78,7 +78,7 @@ def _of_section(
 
 
 def _on_rim(space: Section, zones: tuple[Zone, ...], at: Floats) -> FromInside:
-    """The reading point on the rim of the zone whose circle passes through it."""
+    """Return the reading point on the rim of the zone whose circle passes closest to it."""
     off = [abs(np.hypot(at[0] - p.r, at[1] - p.z) / p.radius - 1.0) for p in zones]
     zone = int(np.argmin(off))
     p, (r, z) = zones[zone], (float(x) for x in at)

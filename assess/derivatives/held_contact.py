@@ -1,16 +1,17 @@
-"""Derivatives of contact between a pin and its lugs while the same cells touch.
+"""Derivatives of the contact between a pin and its lugs, with the same cells in contact.
 
 Forces f on the cells in contact and rigid motions m solve
 
     gap + C f + G m = 0    G^T f = q
 
-which is symmetric; q are the resultants of the links' loads. With the adjoints l and k of a stress
+a symmetric system; q are the resultants of the links' loads. With the adjoints l and k of a stress
 S(f), C l + G k = dS/df and G^T l = 0,
 
     dS = S' - l^T (gap' + C' f + G' m) + k^T (q' - G'^T f)
 
-so that shape, material and loads need no further solution of contact. All of it but the elasticity
-of the bodies (assess.derivatives.ring_work) follows from formulae, and is taken by differences.
+so that derivatives by shape, material and loads need no further contact solution. The elasticity of
+the bodies is left to assess.derivatives.ring_work; all other terms have closed formulae and are
+differentiated by finite differences.
 """
 
 from __future__ import annotations
@@ -27,15 +28,16 @@ from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.links import tilting_bands
 from pinbase.arrays import Floats, Mask
 
-AMPLITUDE_TOLERANCE = 1e-13  # of the largest amplitude: smaller ones are round-off
-# Of the largest pressure or gap: a cell with less is about to open or to close.
+AMPLITUDE_TOLERANCE = 1e-13  # relative to the largest amplitude: smaller ones are round-off
+# Relative to the largest pressure or gap: a cell with less is about to open or to close.
 SWITCHING_TOLERANCE = 1e-6
 
 
 class FixedContact:
-    """Contact with fixed cells at the only instant of the links' loads, and its adjoint.
+    """The contact problem with a fixed set of contact cells, and its adjoint solution. The links'
+    loads have a single instant.
 
-    gradient: (N + 1, R, 2) of the stress by the amplitudes of pressures on the rings.
+    gradient: (N + 1, R, 2) derivative of the stress by the pressure amplitudes on the rings.
     changing: number of cells that are about to open or to close.
 
     Raises: SolveError.
@@ -51,8 +53,8 @@ class FixedContact:
         self._at = self._contact.adjoint(
             pressed.active, self._wanted / self._contact.area, right_hand_side
         )
-        self.changing = _close(pressed.pressure, pressed.active)
-        self.changing += _close(pressed.gap, ~pressed.active)
+        self.changing = _nearly_zero(pressed.pressure, pressed.active)
+        self.changing += _nearly_zero(pressed.gap, ~pressed.active)
         shape = pressed.pressure.shape
         both = self._at.by_gap.reshape(shape), self._at.force.reshape(shape)
         self._l, self._f = (np.fft.fft(x, axis=1) for x in both)  # harmonics, (R, M)
@@ -66,15 +68,14 @@ class FixedContact:
         }
 
     def _right_hand_side(self, model: ContactModel, links: PinLoads) -> Floats:
-        """The right-hand side of the equilibrium, in the directions of the cells."""
+        """Return the right-hand side of the equilibrium, in the axes of the cells."""
         acting = model.acting(links).turned([self._angle])
         x, y = acting.couples[0].tolist()
         return self._contact.required_resultants(acting.forces[0], (x, y), acting.moments[0])
 
     def with_fixed_cells(self, model: ContactModel) -> float:
-        """The stress, Pa, on another shape (ContactModel.reshaped) with the same cells in contact.
-
-        To first order in what differs, without the elasticity of the bodies.
+        """Return the stress, Pa, of another shape (ContactModel.reshaped) with the same cells in
+        contact, to first order in the changes and without the elasticity of the bodies.
         """
         at, bands, sectors = self._at, model.bands, self._contact.sectors
         area = self._contact.cells_area(bands)
@@ -83,11 +84,11 @@ class FixedContact:
         motions, tilts = self._contact.rigid(bands, tilt)
         opened = np.repeat(bands.gap, sectors) + motions @ at.motion + tilts @ (tilts.T @ at.force)
         right_hand_side = self._right_hand_side(model, self._links)
-        # The stress by the cell forces, less the adjoint work of the gaps.
+        # The stress due to the cell forces, less the adjoint work of the gaps.
         total = (self._wanted / area) @ at.force - at.by_gap @ opened
         # Equilibrium of the links' loads.
         total += at.by_required @ (right_hand_side - motions.T @ at.force)
-        # Short waves of pressure, whose flexibility is not part of `ring_work`.
+        # Short pressure waves, whose flexibility is not covered by `ring_work`.
         of_ring = area[::sectors]
         total -= self._tail @ (model.tail / of_ring)
         high = model.high
@@ -101,7 +102,7 @@ class FixedContact:
         return float(total)
 
     def pairs(self, rings: slice = slice(None)) -> Iterator[Pair]:
-        """Pairs of pressures of some rings, whose works are the elastic part of the stress."""
+        """Yield pairs of pressures on some rings; their work is the elastic part of the stress."""
         bands, area = self._model.bands, self._contact.area[:: self._contact.sectors]
         of_ring = bands.length * bands.radius
         for n in range(self._model.cells.highest + 1):
@@ -114,11 +115,11 @@ class FixedContact:
                     yield Pair(n, float(self._factors[n]), part(p[rings]), part(l[rings]))
 
     def by_loads(self, links: PinLoads) -> float:
-        """The stress, Pa, that loads of the links add through the pressures."""
+        """Return the stress, Pa, that loads of the links add through the contact pressures."""
         return float(self._at.by_required @ self._right_hand_side(self._model, links))
 
 
-def _close(values: Floats, some: Mask) -> int:
-    """The number of some of the values that are almost zero."""
+def _nearly_zero(values: Floats, some: Mask) -> int:
+    """Return how many of the selected values are nearly zero, relative to the largest of them."""
     chosen = values[some]
     return int((chosen < SWITCHING_TOLERANCE * chosen.max(initial=0.0)).sum())

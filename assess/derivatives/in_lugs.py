@@ -1,12 +1,13 @@
 """Derivatives of the largest stress of a pin in contact with its lugs: by shape, material, loads.
 
-As long as the same cells are in contact, pressures are a smooth function of all parameters, and
-stress one of pressures and parameters. Three adjoints serve all parameters: that of stress under
-given pressures (assess.derivatives.pressed_stress), on the mesh of the maximum or of a section by
-its forces; that of contact (assess.derivatives.held_contact); and the displacements of pin and lugs
-under the pressures and under the adjoint ones (assess.derivatives.ring_work), on the meshes of
-their flexibilities. So these are the derivatives of the maximum on all moved meshes, with the cells
-of the solution.
+As long as the same cells are in contact, the contact pressures are a smooth function of all
+parameters, and the stress is a smooth function of pressures and parameters. Three adjoint solutions
+serve all parameters: the adjoint of the stress under given pressures
+(assess.derivatives.pressed_stress), on the mesh of the maximum or for a section by its forces; the
+adjoint of the contact problem (assess.derivatives.held_contact); and the displacements of pin and
+lugs under the pressures and under the adjoint pressures (assess.derivatives.ring_work), on the
+meshes of their flexibilities. The result is the derivative of the maximum on all moved meshes, with
+the contact cells of the solution.
 """
 
 from __future__ import annotations
@@ -41,9 +42,9 @@ from geometry.mesh.outline_motion import (
 )
 from pinbase.arrays import Floats
 
-JOINT_FORCE_STEP = 1e-4  # of the largest force: step of differences; contact is linear in it
+JOINT_FORCE_STEP = 1e-4  # difference step, relative to the largest force; contact is linear in it
 TRANSVERSE_AXES = "xy"
-SHAPE_ROUND_OFF = 1e-13  # of the size: smaller motions are round-off
+SHAPE_ROUND_OFF = 1e-13  # relative to the size: smaller motions are round-off
 Joint = tuple[Pin, Material, tuple[Lug, ...]]
 
 
@@ -51,8 +52,8 @@ Joint = tuple[Pin, Material, tuple[Lug, ...]]
 class JointParameter:
     """A parameter of a pin in its lugs.
 
-    scale: of which its steps are parts.
-    changed: gives the joint with another value of it.
+    scale: the steps of differences are parts of this.
+    changed: a function that returns the joint with another value of the parameter.
     """
 
     key: str
@@ -65,14 +66,15 @@ class JointParameter:
 class JointDerivatives:
     """Derivatives of the largest stress `maximum`, Pa, of a pin in its lugs.
 
-    by_parameter: per unit of it, by key.
-    without: why others have none.
-    by_force: Pa/N, by the force of each link, by connection and axis of the pin, the imbalance then
-    being shared by the links.
-    by_moment: Pa/(N m), about its axis, and across it where links state moments.
+    by_parameter: Pa per unit of the parameter, by its key.
+    without: for each parameter without a derivative, the reason.
+    by_force: Pa/N, for the force of each link, by connection and axis of the pin. The links share
+    the imbalance that a changed force leaves.
+    by_moment: Pa/(N m), for moments about the pin's axis, and transverse ones where links state
+    moments.
     tied_places, tied_times: as in assess.derivatives.records.Derivatives.
-    changing: number of cells that are about to open or to close, with which the derivatives hold on
-    one side only.
+    changing: number of contact cells that are about to open or to close. If there are any, the
+    derivatives are one-sided.
     """
 
     maximum: float
@@ -94,11 +96,12 @@ def joint_derivatives(
     alone: bool = False,
     place: Place = "surface",
 ) -> JointDerivatives:
-    """The derivatives of the maximum of a place under pressures at one instant.
+    """Return the derivatives of the largest stress under contact pressures at one instant.
 
     solved: the pin with its bands cut into rings.
     links: the loads that the rings carry.
-    alone: the parameters only, without loads and ties.
+    alone: whether to differentiate by the parameters only, without loads and ties.
+    place: the maximum of the surface or of the sections.
 
     Raises: MeshError, SolveError.
     """
@@ -115,7 +118,7 @@ class _InLugs:
         self.contact = FixedContact(model, links, stress.by_pressures())
 
     def derivatives(self, parameters: tuple[JointParameter, ...], alone: bool) -> JointDerivatives:
-        """The derivatives by parameters and, unless `alone`, by loads, with ties."""
+        """Return the derivatives by parameters and, unless `alone`, by loads, with ties."""
         changes, without = [], {}
         for parameter in parameters:
             try:
@@ -142,7 +145,7 @@ class _InLugs:
 
     @cached_property
     def lug_works(self) -> dict[str, RingWork]:
-        """The works of each lug's flexibility, by connection; equal lugs share one."""
+        """The work of each lug's flexibility, by connection; identical lugs share a `RingWork`."""
         model, out = self.model, dict[str, RingWork]()
         for key, equal in model.equal_lugs().items():
             pairs = {x.connection: tuple(self.contact.pairs(rings)) for rings, x, _ in equal}
@@ -151,16 +154,17 @@ class _InLugs:
 
     @cached_property
     def _flexible(self) -> OutlineNodes:
-        """The outline's nodes of the mesh of the pin's flexibility."""
+        """The nodes on the outline of the mesh for the pin's flexibility."""
         return OutlineNodes(self.pin_work.space.section, self.model.pin)
 
     def _change(self, parameter: JointParameter) -> JointStep:
-        """The joint with steps of a parameter.
+        """Return the joint at the difference steps of a parameter.
 
-        Raises: OtherShapeError if no step keeps the mesh's shape.
+        Raises: OtherShapeError if every step changes the topology of the joint or its mesh.
         """
         model, key = self.model, parameter.key
-        # The largest step first; a smaller one where the joint or its mesh would have another form.
+        # Try the largest step first, then smaller ones where the joint or its mesh would differ in
+        # topology.
         for part in RELATIVE_STEPS:
             step = part * parameter.scale
             values = [parameter.value + x * step for x in DIFFERENCE_STEPS]
@@ -182,9 +186,10 @@ class _InLugs:
         raise OtherShapeError
 
     def _by(self, changes: Sequence[JointStep]) -> dict[str, float]:
-        """Derivatives by parameter, by its key."""
-        # Under fixed pressures; then what changes the pressures: flexibility of the pin by shape
-        # and material, gaps and equilibrium, flexibility of the lugs.
+        """Return the derivatives by the key of each parameter."""
+        # First the derivatives under fixed pressures. Then add the terms that change the pressures:
+        # the flexibility of the pin by shape and material, the gaps and the equilibrium, and the
+        # flexibility of the lugs.
         out = self.stress.at_fixed_pressures(changes)
         shapes = [x.flexible for x in changes if x.flexible is not None]
         if shapes:
@@ -203,11 +208,11 @@ class _InLugs:
         return out
 
     def _acts(self, what: str) -> bool:
-        """Whether any force along the axis, or moment about it, acts."""
+        """Whether any axial force (`what` is "forces") or axial moment ("moments") acts."""
         return bool(getattr(self.links, what)[..., 2].any())
 
     def _by_lug(self, change: JointStep, lug: Lug) -> float:
-        """The contribution of a lug's elasticity."""
+        """Return the contribution of a lug's elasticity to the derivative, Pa per unit."""
         name = lug.connection
         number = self.model.lugs.index(lug)
         others = [one.lugs[number] for one in change.models]
@@ -225,8 +230,8 @@ class _InLugs:
         ):
             return total
         moved = [rate_of([one[k] for one in knots], change.step) for k in (0, 1)]
-        # Nodes keep their places between radii and stations of the lug: their velocities are
-        # interpolated.
+        # Nodes keep their relative positions between the radii and stations of the lug, so their
+        # velocities are interpolated.
         nodes = work.space.nodes
         each_way = [np.interp(nodes[:, k], at[k], moved[k]) for k in (0, 1)]
         velocity, lengths = np.stack(each_way, axis=1), [float(z[-1]) for _, z in knots]
@@ -234,7 +239,7 @@ class _InLugs:
         return total + work.by_reaction(name, velocity, lengths, change.step)
 
     def _by_forces(self) -> By:
-        """Derivatives by forces of the links: transverse ones, and axial ones where any act."""
+        """Return the derivatives by transverse link forces, and by axial ones if any act."""
         links, out = self.links, dict[tuple[str, str], float]()
         step = JOINT_FORCE_STEP * float(np.abs(links.forces).max())
         before = self.contact.by_loads(links)
@@ -242,34 +247,37 @@ class _InLugs:
             for a, axis in enumerate(TRANSVERSE_AXES):
                 one = np.zeros_like(links.forces)
                 one[:, c, a] = step
-                more = replace(links, forces=links.forces + one)
-                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+                changed = replace(links, forces=links.forces + one)
+                out[surface, axis] = (self.contact.by_loads(changed) - before) / step
             if self._acts("forces"):
-                out[surface, "z"] = self._by_one("forces", c)
+                out[surface, "z"] = self._by_axial("forces", c)
         return out
 
     def _by_moments(self) -> By:
-        """Derivatives by moments about the axis, where any act, and by those stated across it."""
+        """Return the derivatives by axial moments, if any act, and by stated transverse moments."""
         links, length = self.links, self.model.pin.length
         tilting = links.tilting_links(length)
         links = replace(links, tilting=tilting)
         turns = enumerate(links.surfaces if self._acts("moments") else ())
-        out = {(surface, "z"): self._by_one("moments", c) for c, surface in turns}
+        out = {(surface, "z"): self._by_axial("moments", c) for c, surface in turns}
         scale = max(np.abs(links.forces).max() * length, np.abs(links.moments).max())
         step, before = JOINT_FORCE_STEP * float(scale), self.contact.by_loads(links)
         for surface in tilting:
             for a, axis in enumerate(TRANSVERSE_AXES):
                 one = np.zeros_like(links.moments)
                 one[:, links.surfaces.index(surface), a] = step
-                more = replace(links, moments=links.moments + one)
-                out[surface, axis] = (self.contact.by_loads(more) - before) / step
+                changed = replace(links, moments=links.moments + one)
+                out[surface, axis] = (self.contact.by_loads(changed) - before) / step
         return out
 
-    def _by_one(self, what: str, c: int) -> float:
-        """The derivative by a link's force along the axis or moment about it."""
+    def _by_axial(self, what: str, c: int) -> float:
+        """Return the derivative by the axial force or axial moment of link c.
+
+        what: "forces" or "moments".
+        """
         none = np.zeros_like(self.links.forces)
         one = none.copy()
-        # A force bears on one side of its lug or on the other.
+        # The sign of an axial force decides on which side of its lug the force bears.
         way = -1.0 if what == "forces" and self.links.forces[0, c, 2] < 0.0 else 1.0
         one[:, c, 2] = way
         both = (one, none) if what == "forces" else (none, one)
@@ -279,7 +287,9 @@ class _InLugs:
 
 
 def _knots(model: ContactModel, lug: Lug) -> tuple[Floats, Floats]:
-    """Radii and z (m) of a lug between which the nodes of its mesh keep their places."""
+    """Return the radii and the z (m) of a lug between which mesh nodes keep their relative
+    positions.
+    """
     bore, ends = model.whole.band(lug.connection).radius, model.ends[lug.connection]
     between = [] if lug.bushing is None else [bore + lug.bushing.thickness]
     return np.array([bore, *between, 0.5 * lug.outer_diameter]), ends - ends[0]

@@ -1,9 +1,10 @@
-"""Derivatives of the largest stress of a pin's sections with respect to all that it depends on.
+"""Derivatives of the largest section stress of a pin with respect to shape, loads and material.
 
-The stress of a section follows from a beam in closed form (fea.section), so it is evaluated again
-with a little more of a dimension or of the material, at the same place of the same cell: along the
-pin the maximum is stationary or held by the cell's end, and likewise across it and about it. Loads
-add to it as they add to the section forces.
+The stress of a section follows from beam theory in closed form (fea.section). It is therefore
+evaluated again with a slightly changed dimension or material, at the same relative place of the
+same cell. The place need not be searched again, because the maximum is stationary along the pin or
+held by the end of the cell, and likewise across the section and around it. The stress is linear in
+the section forces, and so in the loads.
 """
 
 from __future__ import annotations
@@ -42,8 +43,9 @@ POISSON_STEP = 1e-3  # of Poisson's ratio: step of central differences; chosen b
 class SectionPoint:
     """The place in a cell of a beam where stress is read.
 
-    along: part of the way along the cell.
-    across: part of the way from bore to outside.
+    cell, cells: the number of the cell, and how many cells the beam has.
+    along: position along the cell, 0 to 1.
+    across: position from the bore to the outer surface, 0 to 1.
     angle: rad.
     """
 
@@ -55,7 +57,7 @@ class SectionPoint:
 
     @classmethod
     def of(cls, at: AtSection, forces: InternalForces) -> SectionPoint:
-        """The place of the largest section stress."""
+        """Return the place of the largest section stress."""
         a, b = forces.stations[at.cell : at.cell + 2].tolist()
         inner, wall = at.section.inner, at.section.outer - at.section.inner
         return cls(
@@ -63,9 +65,9 @@ class SectionPoint:
         )
 
     def per_unit(self, pin: Pin, forces: InternalForces, nu: float) -> dict[UnitLoad, Floats]:
-        """Stress (6,), Pa, of each unit load: rr, tt, zz, tz, rz, rt.
+        """Return the stress (6,), Pa, of each unit load at the place: rr, tt, zz, tz, rz, rt.
 
-        Raises: OtherShapeError.
+        Raises: OtherShapeError if the beam of the pin has another number of cells.
         """
         if len(forces.sections) != self.cells:
             raise OtherShapeError
@@ -77,7 +79,10 @@ class SectionPoint:
         return {load: stress[:, k] for k, load in enumerate(forces.loads)}
 
     def stress(self, at: dict[UnitLoad, Floats], loads: Loads) -> Floats:
-        """Stress (6,), Pa, by loads of one instant."""
+        """Return the stress (6,), Pa, under loads of one instant.
+
+        at: stress (6,), Pa, of each unit load.
+        """
         out = np.zeros(6)
         for load, both in loads.coefficients().items():
             if load in at:
@@ -87,11 +92,11 @@ class SectionPoint:
 
 
 class GoverningSection:
-    """The largest section stress of a pin as it was solved under loads of one instant.
+    """The largest section stress of a solved pin under loads of one instant.
 
-    at: stress (6,), Pa, of each unit load there, of all forces and moments on the surfaces of the
-    loads.
-    weight: (6,) gradient of von Mises stress.
+    at: stress (6,), Pa, of each unit load at its place, for all forces and moments on the surfaces
+    of the loads.
+    weight: (6,) gradient of the von Mises stress.
     """
 
     def __init__(self, solved: SolvedCase, loads: PinLoads) -> None:
@@ -117,12 +122,12 @@ class GoverningSection:
 
     @property
     def location(self) -> tuple[float, float, float]:
-        """Its location (x, y, z), m."""
+        """The location of the largest section stress (x, y, z), m."""
         r, angle = self.largest.r, self.largest.angle
         return r * float(np.cos(angle)), r * float(np.sin(angle)), self.largest.z
 
     def value(self, pin: Pin, material: Material, loads: PinLoads) -> float:
-        """Von Mises stress, Pa, at that place of another pin, to first order.
+        """Return the von Mises stress, Pa, at the same place of another pin, to first order.
 
         Raises: OtherShapeError.
         """
@@ -131,7 +136,7 @@ class GoverningSection:
         return float(self.weight @ self.point.stress(at, loads))
 
     def of_amounts(self, amounts: dict[UnitLoad, Floats]) -> float:
-        """The stress, Pa, that amounts (2,) of unit loads, by phase, add."""
+        """Return the stress, Pa, that amounts of unit loads add; each amount is (2,), by phase."""
         total = np.zeros(6)
         for load, both in amounts.items():
             for part, amount in enumerate(rotated(load.n, both, self.point.angle).tolist()):
@@ -139,17 +144,17 @@ class GoverningSection:
         return float(self.weight @ total)
 
     def by_loads(self) -> tuple[By, By]:
-        """Derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis."""
+        """Return the derivatives by forces, Pa/N, and by moments, Pa/(N m), by surface and axis."""
         return by_loads(self.at, self.loads, self.weight, self.top)
 
     def by_density(self) -> float:
-        """The derivative by density through the pin's own weight, Pa/(kg/m^3)."""
+        """Return the derivative by density, through the pin's own weight, Pa/(kg/m^3)."""
         body_loads = {u: x[0] for u, x in self.loads.coefficients().items() if u.kind == "body"}
         density = self.solved.material.density
         return self.of_amounts(body_loads) / density if density and body_loads else 0.0
 
     def by_poisson(self) -> float:
-        """The derivative by Poisson's ratio, Pa."""
+        """Return the derivative by Poisson's ratio, Pa."""
         material = self.solved.material
         nu = material.poisson_ratio
 
@@ -160,7 +165,9 @@ class GoverningSection:
         return float(rate(other, min(POISSON_STEP, 0.1 * (0.5 - nu), 0.1 * (1.0 + nu))))
 
     def by_pin(self, pins: Sequence[Pin], step: float) -> float:
-        """The derivative along pins at DIFFERENCE_STEPS times a step, under the same loads.
+        """Return the derivative by a dimension, under the same loads.
+
+        pins: the pin with the dimension changed by each of DIFFERENCE_STEPS times `step`.
 
         Raises: OtherShapeError.
         """
@@ -186,7 +193,7 @@ class GoverningSection:
 
 
 def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> Derivatives:
-    """The derivatives of the largest section stress at the only instant of the loads."""
+    """Return the derivatives of the largest section stress; the loads have a single instant."""
     section = GoverningSection(solved, solved.loads)
     by_dimension, without = dict[str, float](), dict[str, str]()
     for dimension in dimensions:
@@ -202,9 +209,9 @@ def section_derivatives(solved: SolvedCase, dimensions: Sequence[Dimension]) -> 
 
 
 def _by_dimension(section: GoverningSection, dimension: Dimension) -> float:
-    """The derivative by a dimension, Pa/m.
+    """Return the derivative by a dimension, Pa/m.
 
-    Raises: OtherShapeError where there is no such pin on both sides of it.
+    Raises: OtherShapeError if the pin keeps its topology on both sides for none of the steps.
     """
     for part in RELATIVE_STEPS:
         step = part * dimension.value

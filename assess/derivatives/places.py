@@ -1,6 +1,6 @@
 """Derivatives of the largest stress in each part of a pin, on one mesh and with shared matrices.
 
-So what may govern next is known beside what governs.
+The parts show which place may govern next, in addition to the one that governs now.
 """
 
 from __future__ import annotations
@@ -33,9 +33,11 @@ class PartTop:
 
 
 def halves(stations: Sequence[float], points: Floats) -> Parts:
-    """The near and the far half of every segment, with the points (S, 2) in each.
+    """Return the first and the second half of every segment: their names and the masks (S,) of the
+    points in them.
 
-    stations: m, ends of the segments.
+    stations: the ends of the segments, m.
+    points: (S, 2) r and z, m.
     """
     out = []
     last = len(stations) - 2
@@ -50,9 +52,8 @@ def halves(stations: Sequence[float], points: Floats) -> Parts:
 
 
 class PartsOfSection:
-    """The largest stress in parts of a pin, for cases solved on one mesh, and its slopes.
-
-    dimensions: with respect to which slopes are taken.
+    """The largest stress in each part of a pin, for load cases solved on one mesh, and its
+    derivatives by dimensions.
     """
 
     def __init__(self, dimensions: tuple[Dimension, ...]) -> None:
@@ -61,7 +62,10 @@ class PartsOfSection:
         self._motions: dict[tuple[object, ...], list[NodeMotion]] = {}
 
     def tops(self, solved: SolvedCase, loads: PinLoads, parts: Parts) -> list[PartTop]:
-        """The largest stress in each part that has points. loads: of all instants."""
+        """Return the largest stress in each part that has points outside the excluded zones.
+
+        loads: at all instants.
+        """
         around = reader(solved.solution.fields, loads, solved.material.poisson_ratio)
         outside = around.fields.outside(solved.zones)
         return [
@@ -71,7 +75,10 @@ class PartsOfSection:
         ]
 
     def slopes(self, solved: SolvedCase, loads: PinLoads, part_top: PartTop, mask: Mask) -> Floats:
-        """Derivatives (n,), Pa/m, of a part's largest stress by the dimensions, or 0.
+        """Return the derivatives (n,), Pa/m, of a part's largest stress by the n dimensions; 0 for
+        a dimension without a derivative.
+
+        mask: (S,) points of the part.
 
         Raises: SolveError.
         """
@@ -85,7 +92,7 @@ class PartsOfSection:
         return np.array([by_key.get(d.key, 0.0) for d in self._dimensions])
 
     def _moving(self, adjoint: Adjoint) -> list[NodeMotion]:
-        """The outline's motions by the dimensions that have one."""
+        """Return the motion of the outline for each dimension that has one."""
         out = []
         for dimension in self._dimensions:
             try:

@@ -1,6 +1,7 @@
-"""The largest stress of a pin under given pressures of its lugs, of the surface or of sections.
+"""The largest stress of a pin, of its surface or of its sections, under given lug pressures.
 
-It gives the derivative by these pressures, and by changes of the joint while they stay.
+The classes give the derivatives of this stress by the pressures, and by changes of the joint at
+fixed pressures.
 """
 
 from __future__ import annotations
@@ -27,9 +28,12 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class JointStep:
-    """The joint at DIFFERENCE_STEPS times a step (m, or its unit) of a parameter, by its key.
+    """The joint at the difference steps of a parameter.
 
-    flexible: motion of the outline on the mesh of the pin's flexibility, None where the pin stays.
+    key: of the parameter.
+    models: the joint at DIFFERENCE_STEPS times `step` (m, or the unit of the parameter).
+    flexible: the motion of the outline on the mesh for the pin's flexibility; None where the pin
+    does not change.
     """
 
     key: str
@@ -39,16 +43,16 @@ class JointStep:
 
     @property
     def pins(self) -> tuple[Pin, ...]:
-        """The pins with their rings."""
+        """The pins with their rings, one for each model."""
         return tuple(one.pin for one in self.models)
 
     def rate(self, of: Callable[[ContactModel], Floats | float]) -> Floats:
-        """The derivative of a quantity of the joint."""
+        """Return the derivative by the parameter of a quantity `of` the joint."""
         return rate_of([np.asarray(of(one)) for one in self.models], self.step)
 
 
 class PressedStress(Protocol):
-    """A stress, Pa, under pressures at one instant."""
+    """The interface of a stress, Pa, under lug pressures at one instant."""
 
     @property
     def maximum(self) -> float: ...
@@ -60,21 +64,23 @@ class PressedStress(Protocol):
     def tied_times(self) -> tuple[float, ...]: ...
 
     def by_pressures(self) -> Floats:
-        """The gradient (N + 1, R, 2) by the amplitudes of pressures on the rings."""
+        """Return the derivative (N + 1, R, 2) by the pressure amplitudes of the harmonics 0 to N on
+        the R rings, by phase.
+        """
 
     def require(self, change: JointStep) -> None:
-        """Check that a change keeps the shape.
+        """Check that a change keeps the topology of the pin or its beam.
 
         Raises: OtherShapeError.
         """
 
     def at_fixed_pressures(self, changes: Sequence[JointStep]) -> dict[str, float]:
-        """The derivative by each change, by its key, under the same pressures."""
+        """Return the derivative by each change at fixed pressures, by the key of the change."""
 
     def of_amounts(self, amounts: Mapping[UnitLoad, Floats]) -> float:
-        """The stress, Pa, that amounts (2,) of unit loads, by phase, add.
+        """Return the stress, Pa, that amounts of axial unit loads and torques add.
 
-        They act along the axis and about it.
+        amounts: (2,) by phase.
         """
 
 
@@ -122,12 +128,12 @@ class OfSurface:
         return out
 
     def _by_material(self, change: JointStep) -> float:
-        """The part by the pin's material, and by the exponent of pressure at a lug's edge."""
+        """Return the part due to the pin's material and the pressure exponent at a lug's edge."""
         adjoint, point, total = self._adjoint, self._adjoint.point, 0.0
         if isinstance(point, Continued):
-            more = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
-            if more:
-                total += float(more) * adjoint.by_exponent()
+            exponent = change.rate(lambda one: one.on_shaft.exponent[point.cusp.ring])
+            if exponent:
+                total += float(exponent) * adjoint.by_exponent()
         if poisson := float(change.rate(lambda one: one.material.poisson_ratio)):
             total += poisson * adjoint.by_poisson()
         if density := float(change.rate(lambda one: one.material.density or 0.0)):
@@ -135,7 +141,7 @@ class OfSurface:
         return total
 
     def _by_shares(self, change: JointStep) -> float:
-        """The part by loads along the axis and about it, which rings share by their lengths."""
+        """Return the part due to axial forces and moments, which rings share by their lengths."""
         links = self._links
         along = links.forces[..., 2].any() or links.moments[..., 2].any()
         if change.flexible is None or not along:
@@ -157,7 +163,7 @@ class OfSurface:
 class OfSections:
     """The largest stress over the sections of a pin (assess.derivatives.in_section).
 
-    Sections carry the resultants of the pressures alone.
+    Sections carry only the resultants of the pressures.
     """
 
     def __init__(self, solved: SolvedCase, model: ContactModel, links: PinLoads) -> None:
@@ -188,7 +194,7 @@ class OfSections:
         return {x.key: float(x.rate(self._value)) for x in changes}
 
     def _value(self, model: ContactModel) -> float:
-        """The stress of another joint under the same pressures.
+        """Return the stress, Pa, of another joint under the same pressures.
 
         Raises: OtherShapeError.
         """

@@ -1,10 +1,10 @@
-"""The stress that is read at one point of a section's mesh, as a function of nearby quantities.
+"""The stress at one point of a section's mesh, as a function of nodes, displacements and tractions.
 
-A point is read as in fea.harmonic.stress_recovery: on the surface from the strains of its edge and
-the ones before and after it; inside, on clamped surfaces and on rims of excluded zones from the
-samples of the nearest elements; where a pressure ends from samples further on. Where lugs press on
-the surface it may be a combination of these (fea.harmonic.free_surface). Nodes may move, and then
-the point moves with them.
+Stress is read as in fea.harmonic.stress_recovery. At a point on the surface it comes from the
+strains of the point's edge and of the edges before and after it. At a point inside, on a clamped
+surface or on the rim of an excluded zone it comes from samples of the nearest elements. At the end
+of a pressure it comes from samples farther away. Where lugs press on the surface, it may be a
+combination of these (fea.harmonic.free_surface). If the nodes move, the point moves with them.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ _TO_UNKNOWNS = np.array([[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.0, 0.0, 1.0]])
 
 @dataclass(frozen=True)
 class SectionState:
-    """A section that may differ from the solved one.
+    """The state of a section, which may differ from the solved one.
 
     nodes: (N, 2) m.
-    traction: (E, 3, 3, K) Pa, on its outline's edges.
-    places: (Z, 3) m, r, z and radius of the excluded zones.
+    traction: (E, 3, 3, K) Pa, on the edges of the outline.
+    places: (Z, 3) m, r, z and radius of each excluded zone.
     """
 
     nodes: Floats
@@ -46,31 +46,32 @@ class SectionState:
 
 
 class ReadingPoint(Protocol):
-    """A point at which stress is read.
+    """The interface of a point at which stress is read.
 
-    nodes: (L,) numbers of the nodes on whose displacements its stress depends.
+    nodes: (L,) numbers of the nodes on whose displacements the stress depends.
     """
 
     @property
     def nodes(self) -> Ints: ...
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        """Stress amplitudes (6, K), Pa.
+        """Return the stress amplitudes (6, K), Pa, of K waves.
 
         n: (K,) harmonics.
-        u: (L, 3, K) m, displacements of the point's nodes.
+        u: (L, 3, K) displacements of the point's nodes, m.
         """
         ...
 
 
 @dataclass(frozen=True)
 class OnSkin:
-    """Points (P,) of the skin.
+    """Points (P,) on the surface, which is made of edges.
 
-    edges: the edges they are on, and the ones before and after these that go on smoothly.
-    neighbours: before and after each edge, as numbers among these, or -1.
-    of: (P,) the edge of each point, likewise.
-    at: (P,) which of its five points it is.
+    edges: numbers of the edges with the points, and of the edges that continue these smoothly.
+    neighbours: for each of `edges`, the edge before and the edge after it, as a position in
+    `edges`, or -1 if there is none.
+    of: (P,) the edge of each point, as a position in `edges`.
+    at: (P,) which of the five points of that edge it is.
     """
 
     outline: Outline
@@ -90,19 +91,22 @@ class OnSkin:
     def each(
         self, material: Material, state: SectionState, n: Ints, u: Floats
     ) -> tuple[Floats, Floats]:
-        """The points (P, 2), m, and the stress there, (P, 6, K), Pa."""
+        """Return the points (P, 2), m, and the stress there, (P, 6, K), Pa."""
         x = state.nodes[self.outline.nodes[self.edges]]
         traction = state.traction[self.edges]
         skin = on_edges(material, n, x, u[self._local], traction, self.neighbours)
         return skin.points[self.of, self.at], skin.stress[self.of, self.at]
 
     def stress(self, material: Material, state: SectionState, n: Ints, u: Floats) -> Floats:
-        """The stress of the only point."""
+        """Return the stress at the first point, (6, K), Pa."""
         return np.asarray(self.each(material, state, n, u)[1][0])
 
 
 def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin:
-    """Points `at` of edges. traction: (E, 3, 3, K) Pa, whose jumps separate edges."""
+    """Return the points `at` of some edges.
+
+    traction: (E, 3, 3, K) Pa. Edges between which it jumps do not count as neighbours.
+    """
     x = outline.every_node[outline.nodes]
     both = [neighbour[edges] for neighbour in smooth_neighbours(outline, x, traction)]
     every = np.unique(np.concatenate([edges, *(some[some >= 0] for some in both)]))
@@ -116,7 +120,7 @@ def on_skin(outline: Outline, traction: Floats, edges: Ints, at: Ints) -> OnSkin
 
 @dataclass(frozen=True)
 class Relieved:
-    """A point in the middle of a ring, without the local stress of its pressure.
+    """A point in the middle of a ring, without the local stress of the pressure on the ring.
 
     See fea.harmonic.free_surface.
     """
@@ -136,7 +140,7 @@ class Relieved:
 
 @dataclass(frozen=True)
 class Continued:
-    """The edge of a lug, at a node, to which stress is extrapolated from beside it."""
+    """The edge of a lug, at a node, to which stress is extrapolated from points near it."""
 
     points: OnSkin
     cusp: Cusp
@@ -154,19 +158,19 @@ class Continued:
 
 @dataclass(frozen=True)
 class Samples:
-    """Some of a section's samples, by their numbers `which` (S,), three to an element."""
+    """Some of a section's sample points, by their numbers `which` (S,). An element has three."""
 
     space: Section
     which: Ints
 
     @cached_property
     def elements(self) -> Ints:
-        """Numbers (m,) of the elements that contain them."""
+        """The numbers (m,) of the elements that contain the samples."""
         return np.unique(self.which // 3)
 
     @cached_property
     def nodes(self) -> Ints:
-        """Numbers (L,) of the nodes of these elements."""
+        """The numbers (L,) of the nodes of these elements."""
         return np.unique(self.space.elements[self.elements])
 
     @cached_property
@@ -175,11 +179,11 @@ class Samples:
         return rows, self.which % 3
 
     def read(self, material: Material, nodes: Floats, n: Ints, u: Floats) -> tuple[Floats, Floats]:
-        """The sample points (S, 2), m, and the stress there, (S, 6, K), Pa.
+        """Return the sample points (S, 2), m, and the stress there, (S, 6, K), Pa.
 
-        nodes: (N, 2) m of the section.
+        nodes: (N, 2) of the section, m.
         n: (K,) harmonics.
-        u: (L, 3, K) m.
+        u: (L, 3, K) displacements of the samples' nodes, m.
         """
         members = self.space.elements[self.elements]
         x, moved = nodes[members], u[np.searchsorted(self.nodes, members)]
@@ -197,16 +201,19 @@ class Samples:
 
 
 def _reference(space: Section) -> tuple[Floats, Floats]:
-    """Shape functions (3, 6) and their slopes (3, 6, 2) at the samples of an element."""
+    """Return the shape functions (3, 6) and their slopes (3, 6, 2) at the samples of an element."""
     values, slopes = triangle_shapes(space.sampled_at)
     return values.T, slopes.T
 
 
 @dataclass(frozen=True)
 class FromInside:
-    """A value extrapolated from the nearest samples to places, as a weighted sum.
+    """A stress extrapolated from the nearest samples to one or more places, as a weighted sum.
 
-    on: numbers of the nodes that are the places; without any, `place` (r, z) on the rim of a zone.
+    samples: the nearest samples of each place. shares: the weight of each place in the sum.
+    on: the nodes that are the places, by number. If empty, the only place is `place` (r, z), m, on
+    the rim of the zone with number `zone`.
+    zone_at: r, z and radius of this zone in the solution, m.
     """
 
     samples: tuple[Samples, ...]
@@ -242,7 +249,10 @@ class FromInside:
 
 @dataclass(frozen=True)
 class AtJump:
-    """A direction at the end of a pressure (fea.harmonic.pressure_edge), by its number."""
+    """One direction of reading at the end of a pressure (fea.harmonic.pressure_edge).
+
+    direction: the number of the direction.
+    """
 
     outline: Outline
     jump: Jump
@@ -265,19 +275,19 @@ class AtJump:
 
 
 def nearest(space: Section, places: Sequence[Floats]) -> tuple[Samples, ...]:
-    """The samples from which fea.core.local_fit.continuation takes the value at each place."""
+    """Return, for each place, the samples that fea.core.local_fit.continuation would use there."""
     count = min(FIT_SAMPLES, len(space.samples))
     tree = cKDTree(space.samples)
     return tuple(Samples(space, np.asarray(tree.query(place, count)[1])) for place in places)
 
 
 def at_node(space: Section, node: int) -> FromInside:
-    """The reading point of an inner node."""
+    """Return the reading point at an inner node."""
     return FromInside(nearest(space, [space.nodes[node]]), (1.0,), (node,))
 
 
 def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside:
-    """The reading point `at` of a clamped edge or one on the axis."""
+    """Return the reading point `at` of an edge that is clamped or lies on the axis."""
     parts = shapes(EDGE_STATIONS[at : at + 1])[0]
     some = [(float(p), int(k)) for p, k in zip(parts, outline.nodes[edge], strict=True) if p]
     on = tuple(k for _, k in some)
@@ -285,5 +295,5 @@ def at_rough(space: Section, outline: Outline, edge: int, at: int) -> FromInside
 
 
 def on_axis(space: Section, r: float) -> bool:
-    """Whether a radius (m) is that of the axis."""
+    """Whether a radius (m) is zero within the tolerance."""
     return bool(r < ON_AXIS_TOLERANCE * space.nodes[:, 0].max())

@@ -1,4 +1,4 @@
-"""The case that is differentiated, and its derivatives."""
+"""The solved load case that is differentiated, and its derivatives."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from geometry import Pin
 
 @dataclass(frozen=True)
 class SolvedCase:
-    """A pin as it was solved on one mesh under loads of one instant.
+    """A pin solved on one mesh under the loads of one instant.
 
-    clamps: surfaces, by the pin's names.
-    zones: the singularities that are left out.
-    error: of the maximum, relative.
+    clamps: the names of the clamped surfaces.
+    zones: the excluded zones at singularities.
+    error: the relative error of the maximum.
     history: the loads at all instants of the case, if there are more.
     """
 
@@ -37,15 +37,15 @@ class Derivatives:
 
     location: (x, y, z), m.
     by_dimension: Pa/m, by the key of each dimension.
-    without: why others have none.
-    by_force, by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), the
-    other loads as they are.
+    without: for each dimension without a derivative, the reason.
+    by_force, by_moment: Pa/N and Pa/(N m), by surface and axis of the pin ("x", "y", "z"), with the
+    other loads unchanged.
     poisson_ratio: Pa.
-    youngs_modulus: 0, because a pin under given loads has the same stress with any.
-    density: Pa/(kg/m^3), by its own weight.
-    tied_places, tied_times: others, (r, z) in m and s, whose stress is within the error of the
-    maximum. One of them may govern as soon as anything changes, so that the derivatives hold on one
-    side only.
+    youngs_modulus: 0, because the stress of a pin under given loads does not depend on it.
+    density: Pa/(kg/m^3), through the pin's own weight.
+    tied_places, tied_times: other places (r, z), m, and times, s, whose stress is within the error
+    of the maximum. Any of them may govern as soon as anything changes, so that the derivatives are
+    then one-sided.
     """
 
     maximum: float

@@ -1,10 +1,10 @@
-"""The change of a pin's or lug's flexibility on its rings with its shape and material.
+"""The derivative of the flexibility of a pin or lug on its rings by shape and material.
 
-For each harmonic the flexibility is C = f^T K^-1 f over the area of the rings, f the forces of a
-unit pressure on each. With pressures p and l and their displacements u and v the work l^T C p
-changes by - (v^T K u)' and by the change of forces. The forces of a ring are proportional to its
-area, which the caller accounts for, who has p and l as forces on cells; the reaction that guides a
-lug turns with its shape, too.
+For each harmonic the flexibility is C = f^T K^-1 f over the area of the rings; f are the forces of
+a unit pressure on each ring. With pressures p and l and their displacements u and v, the work
+l^T C p changes by - (v^T K u)' and by the change of the forces. The forces of a ring are
+proportional to its area. The caller accounts for this area, because its p and l are forces on
+cells. The reaction that guides a lug also changes with the shape of the lug.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from pinbase.arrays import Floats
 
 @dataclass(frozen=True)
 class Pair:
-    """Pressures of harmonic n on rings, p and l (R,), and how many times their work counts."""
+    """Two pressures of harmonic n on the rings, p and l (R,); `times` multiplies their work."""
 
     n: int
     times: float
@@ -35,7 +35,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class _SolvedPair:
-    """A pair's forces without reactions, and displacements, (unknowns, 2) each, of p and l."""
+    """The forces without reactions and the displacements of a pair, (unknowns, 2), for p and l."""
 
     n: int
     times: float
@@ -44,16 +44,17 @@ class _SolvedPair:
 
 
 class RingWork:
-    """Rates of minus the sum of works l^T C p, N m, for a body and all bodies like it.
+    """Derivatives of minus the sum of the works l^T C p, N m, for a body and all identical bodies.
+    The forces on the rings do not change.
 
-    pairs: those of each body, by its name. The forces on the rings stay as they are.
+    pairs: the pairs of pressures of each body, by the name of the body.
     """
 
     def __init__(self, on: RingBody, pairs: Mapping[str, Sequence[Pair]]) -> None:
         self.on, self.space = on, on.body.space
         self._solved_pairs: dict[str, list[_SolvedPair]] = {name: [] for name in pairs}
         every = sorted(((x.n, name, x) for name, some in pairs.items() for x in some), key=_order)
-        # All pairs of a harmonic are solved at once, then sorted by body.
+        # All pairs of a harmonic are solved together, then assigned to their bodies.
         for n, same in groupby(every, key=_order):
             some = list(same)
             forces = on.forces(n) @ np.stack([y for *_, x in some for y in (x.p, x.l)], axis=1)
@@ -72,15 +73,15 @@ class RingWork:
         }
 
     def by_shape(self, name: str, velocity: Floats) -> float:
-        """The rate with the nodes' velocity (N, 2)."""
+        """Return the derivative along a motion of the nodes with velocity (N, 2)."""
         return float(np.sum(self._gradient[name] * velocity))
 
     def by_reaction(
         self, name: str, velocity: Floats, lengths: Sequence[float], step: float
     ) -> float:
-        """The part of that rate by the reaction of a guide.
+        """Return the part of the derivative by shape that is due to the reaction of a guide.
 
-        lengths: of the body, m, at DIFFERENCE_STEPS times a step.
+        lengths: the length of the body, m, at each of DIFFERENCE_STEPS times `step`.
         """
         total, outline = 0.0, self.on.body.outline
         for x in self._solved_pairs[name]:
@@ -95,7 +96,10 @@ class RingWork:
         return total
 
     def by_material(self, name: str, rates: Sequence[Floats]) -> float:
-        """The rate with the rates (6, 6) of the elasticity of each part."""
+        """Return the derivative by material.
+
+        rates: (6, 6) derivative of the elasticity of each part of the body.
+        """
         D = self._by_element(rates)
         return sum(x.times * work(self.space, D, x.n, *x.u.T) for x in self._solved_pairs[name])
 

@@ -1,4 +1,4 @@
-"""Other places and times at which stress is as large as the maximum, within its error."""
+"""Other places and times at which the stress equals the maximum within its error."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from fea.harmonic.superposition import Circumference, Crest
 def competing_places(
     around: Circumference, zones: Iterable[Zone], top: Crest, error: float
 ) -> tuple[tuple[float, float], ...]:
-    """Well separated places (r, z), m, with nearly the maximum at the governing instant.
+    """Return well separated places (r, z), m, whose stress at the governing instant is nearly the
+    maximum, without the place of the maximum itself.
 
-    error: of the maximum, relative.
+    error: the relative error of the maximum.
     """
     fields = around.fields
     return high_places(around, fields.points, fields.outside(zones), top, 1.0 - error)[1:]
 
 
 def competing_times(solved: SolvedCase, maximum: float) -> tuple[float, ...]:
-    """Times, s, of other crests that are nearly as high as the governing one."""
+    """Return the times, s, of other peaks over time that nearly reach the governing one."""
     return crests(HarmonicField(solved.solution, solved.zones), solved, maximum)
 
 
@@ -35,17 +36,18 @@ def crests(
     answer: StressMaxima,
     solved: SolvedCase,
     maximum: float,
-    felt: Callable[[PinLoads], PinLoads] = lambda loads: loads,
+    acting_part: Callable[[PinLoads], PinLoads] = lambda loads: loads,
 ) -> tuple[float, ...]:
-    """Times, s, of other crests of any field's maximum over time.
+    """Return the times, s, of other peaks of a field's maximum over time that are nearly as high as
+    the governing one.
 
-    felt: gives the part of the loads that acts on the field.
+    acting_part: a function that returns the part of the loads which acts on the field.
     """
     every, times = solved.history, solved.loads.times
     if every is None or every.times is None or times is None:
         return ()
     least, now, at = (1.0 - solved.error) * maximum, float(times[0]), every.times
-    maxima = answer.maxima(felt(every), least)
+    maxima = answer.maxima(acting_part(every), least)
     high = np.flatnonzero(maxima > least)
     runs = np.split(high, np.flatnonzero(np.diff(high) > 1) + 1)
     return tuple(

@@ -1,19 +1,19 @@
-"""The change of the work of stresses on virtual displacements when the nodes of a section move.
+"""The change of the virtual work of the stresses when the nodes of a section move.
 
-The stiffness K of a harmonic does the work l^T K u = integral of e(l)^T D e(u) r dA about the axis,
-where strains are linear in G = (u,r u,z u/r) of every unknown. If all points move by V, shape
-functions move with them, so that
+With the stiffness K of a harmonic, the work is l^T K u = integral of e(l)^T D e(u) r dA about the
+axis. The strains are linear in G = (u,r u,z u/r) of every unknown. If all points move by V, the
+shape functions move with them, so that
 
     d(u,b) = - sum over a of u,a V_a,b    d(u/r) = -(u/r) V_r / r    d(r dA) = (div V + V_r/r) r dA
 
-at every point, quadrature points of the elements included. So the rate of the work, of the discrete
-problem exactly, is the integral of W : grad V + w V_r / r with
+at every point, including the quadrature points of the elements. The derivative of the work is
+therefore, exactly for the discrete problem, the integral of W : grad V + w V_r / r with
 
     W_ab = e d_ab - sum over unknowns of (G_a(l) P_b(u) + G_a(u) P_b(l))
     w    = e      - sum over unknowns of (G_3(l) P_3(u) + G_3(u) P_3(l))
 
-e the density of the work and P the stresses that work on G. It is linear in V: a vector of the
-nodes, found once for all motions.
+e is the density of the work and P are the stresses conjugate to G. The derivative is linear in V,
+so that one nodal vector, computed once, serves all motions.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ from fea.core.linear_solver import ConstrainedSystem
 from fea.harmonic.assembly import Section, around, strain_map
 from pinbase.arrays import Floats, Ints
 
-ELEMENT_BATCH = 8192  # elements at once: limits memory
-MOTION_BATCH = 32  # motions at once: limits memory
+ELEMENT_BATCH = 8192  # elements processed at once; limits memory
+MOTION_BATCH = 32  # motions processed at once; limits memory
 
 
 def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> Floats:
-    """The rate (N, 2) of adjoint^T K u, N m per m, with the coordinates r, z of every node.
+    """Return the derivative (N, 2) of adjoint^T K u, N m per m, by r and z of every node.
 
     u, adjoint: (3 N,) unknowns of harmonic n.
-    D: (6, 6), or that of each element, as fea.harmonic.assembly.elasticity.
+    D: elasticity (6, 6), or one for each element, as in fea.harmonic.assembly.elasticity.
     """
     out = np.zeros((len(space.nodes), 2))
     for here, gradients, weights, (G, L) in _parts(space, (u, adjoint)):
@@ -57,7 +57,7 @@ def shape_gradient(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats
 
 
 def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float:
-    """The work adjoint^T K u, N m; arguments as for `shape_gradient`."""
+    """Return the work adjoint^T K u, N m; arguments as for `shape_gradient`."""
     total = 0.0
     for here, _, weights, (G, L) in _parts(space, (u, adjoint)):
         total += float(np.einsum("mq,mqca,mqca->", weights, L, _conjugate(D, here, n, G)))
@@ -67,27 +67,30 @@ def work(space: Section, D: Floats, n: int, u: Floats, adjoint: Floats) -> float
 def _parts(
     space: Section, unknowns: tuple[Floats, ...]
 ) -> Iterator[tuple[slice, Floats, Floats, list[Floats]]]:
-    """Batches of elements with gradients, weights, and G (M, Q, 3, 3) of each vector."""
+    """Yield batches of elements: slice, gradients, weights, and G (M, Q, 3, 3) of each vector."""
     gradients, weights = space.quadrature
     at_nodes = [x.reshape(-1, 3)[space.elements] for x in unknowns]
     for k in range(0, len(weights), ELEMENT_BATCH):
         here = slice(k, k + ELEMENT_BATCH)
         some = gradients[here]
-        # Points and directions in one axis: a product of matrices for each element.
+        # Points and directions share one array axis, which gives one matrix product per element.
         flat = some.reshape(len(some), -1, some.shape[-1])
         G = [(flat @ x[here]).reshape(*some.shape[:3], 3).swapaxes(-1, -2) for x in at_nodes]
         yield here, some, weights[here], G
 
 
 def _conjugate(D: Floats, here: slice, n: int, G: Floats) -> Floats:
-    """The stresses (M, Q, 3, 3) that work on G: derivatives of half e^T D e."""
+    """Return the stresses (M, Q, 3, 3) conjugate to G: the derivatives of half e^T D e by G."""
     E = strain_map(n).reshape(6, 9)
     elastic = D[here] if D.ndim > 2 else D
     return np.asarray((G.reshape(*G.shape[:2], 9) @ (E.T @ elastic @ E)).reshape(G.shape))
 
 
 def integral_rate(space: Section, velocity: Floats) -> Floats:
-    """The rate (N,) of Section.integrals, m^3 per unit, with the nodes' velocities (N, 2)."""
+    """Return the derivative (N,) of Section.integrals, m^3 per unit.
+
+    velocity: (N, 2) of the nodes.
+    """
     gradients, weights = space.quadrature
     value = gradients[:, :, 2] * space.radii[..., None]
     v = velocity[space.elements]
@@ -99,7 +102,7 @@ def integral_rate(space: Section, velocity: Floats) -> Floats:
 
 
 class Interior:
-    """Velocities of all nodes of a section from those of its outline, by harmonic functions."""
+    """The harmonic extension of velocities on the outline of a section to all its nodes."""
 
     def __init__(self, space: Section, outline: Ints) -> None:
         gradients, weights = space.quadrature
@@ -113,7 +116,10 @@ class Interior:
         self._system = ConstrainedSystem(self._matrix)
 
     def velocity(self, on_outline: Floats) -> Floats:
-        """Velocities (N, 2, P) of all nodes from those of the outline's nodes, (B, 2, P)."""
+        """Return the velocities (N, 2, P) of all nodes for P motions of the outline's nodes.
+
+        on_outline: (B, 2, P) velocities of the B nodes of the outline.
+        """
         count = on_outline.shape[2]
         out = np.zeros((len(self._free), 2 * count))
         out[self._outline] = on_outline.reshape(len(self._outline), -1)

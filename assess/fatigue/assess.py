@@ -4,8 +4,9 @@ signed-von-mises   rainflow of the signed von Mises stress, mean stress, S-N cur
 critical-plane     Findley's plane of largest damage                  (`critical_plane`)
 fkm-p-ram          local strains by the FKM guideline                 (`fkm`)
 
-The first and the last take one course of stress with a sign. Where none stands for the history
-(assess.fatigue.proportional), the critical plane is taken instead, or the history is refused.
+The first and the last method take a single signed stress. Where no signed stress represents the
+history (assess.fatigue.proportional), the critical plane is used instead; if its data are missing,
+the history is refused.
 """
 
 from __future__ import annotations
@@ -29,23 +30,25 @@ from pinbase.errors import ArgumentError
 Method = Literal["signed-von-mises", "critical-plane", "fkm-p-ram"]
 SHOWN_PROBABILITIES = (0.1, 0.5, 0.9)  # of failure, at which lives are reported
 TRESCA_RATIO = 2.0 / 3.0**0.5  # largest ratio of Tresca's stress to von Mises stress
-# Of Findley's equivalent amplitude over the largest Tresca stress T, where a plane has its shear
-# stress, T/2, and its normal stress, T, at different instants: (1 + 2 k)/(k + sqrt(1 + k^2)), which
-# is largest at k = 3/4.
+# Largest ratio of Findley's equivalent amplitude to the largest Tresca stress T. In the worst case
+# a plane has its shear stress, T/2, and its normal stress, T, at different instants; the ratio is
+# then (1 + 2 k)/(k + sqrt(1 + k^2)), which is largest at k = 3/4.
 FINDLEY_RATIO = 1.25
-MIN_SHOWN_AMPLITUDE = 0.01  # of the largest amplitude: smaller ones are not shown
+MIN_SHOWN_AMPLITUDE = 0.01  # relative to the largest amplitude: smaller ones are not shown
 
 
-# By what is open of the stress and by case: the largest stress over that of the case.
+# The ratio of the largest stress to the stress of the case, by source of uncertainty and by case.
 Growth = Mapping[str, Mapping[str, float]]
 
 
 @dataclass(frozen=True)
 class Spectrum:
-    """The load spectrum of a pin and how its damage is assessed.
+    """The load spectrum of a pin and the way in which its damage is assessed.
 
-    occurrences: of cases per unit (a flight, say), in the order in which they follow each other.
-    probability: of failure at which damage is assessed, by default that of the S-N data.
+    occurrences: how often each load case occurs per unit (for example per flight), in the order in
+    which the cases follow each other.
+    probability: the failure probability for which damage is assessed, by default that of the S-N
+    data.
     life: design life, in units.
     """
 
@@ -57,7 +60,7 @@ class Spectrum:
 
 @dataclass(frozen=True)
 class FatigueMaterial:
-    """Fatigue data of a material: an S-N curve, Findley's mean stress sensitivity, data for FKM."""
+    """The fatigue data of a material: S-N curve, Findley's mean stress sensitivity, FKM data."""
 
     curve: SnCurve | None = None
     sensitivity: float | None = None
@@ -66,12 +69,12 @@ class FatigueMaterial:
 
 @dataclass(frozen=True)
 class _MethodResult:
-    """Damage per unit at each probability (None: the requested one), and the cycles behind it.
+    """The damage per unit at each failure probability (None: the requested one), and its cycles.
 
-    amplitude, mean: Pa, of the largest cycle.
-    equivalent: (C,) Pa.
-    units: until the spectrum repeats.
-    normal: of the critical plane.
+    amplitude, mean: of the largest cycle, Pa.
+    equivalent: (C,) equivalent amplitudes of all cycles, Pa.
+    units: the number of units after which the spectrum repeats itself.
+    normal: of the critical plane, in the axes of the stresses.
     """
 
     damage: dict[float | None, float]
@@ -85,10 +88,11 @@ class _MethodResult:
 def assess(
     history: PointHistory, spectrum: Spectrum, material: FatigueMaterial
 ) -> PointFatigue | None:
-    """The damage at a point; None where no case of the spectrum acts or the method has no data.
+    """Return the damage at a point; None if no case of the spectrum was solved or the material
+    lacks the data of the method.
 
-    Raises: ArgumentError where the method cannot see the history and the critical plane, which can,
-    lacks data (`unseen-history`).
+    Raises: ArgumentError if the method cannot represent the stress history and the critical plane,
+    which can, lacks data (`unseen-history`).
     """
     known = {case.case: case for case in history.cases}
     cases = [known[name] for name, n in spectrum.occurrences.items() if n > 0.0 and name in known]
@@ -126,9 +130,9 @@ def assess(
 def assess_over(
     history: PointHistory, spectrum: Spectrum, material: FatigueMaterial, growth: Growth
 ) -> PointFatigue | None:
-    """`assess` with the largest damage over what is open of the stress.
+    """Return `assess` with the largest damage over the uncertainties of the stress.
 
-    All components of the stress of a case are taken to grow alike, at all instants.
+    All stress components of a case are assumed to grow by the same ratio, at all instants.
 
     Raises: ArgumentError, as `assess`.
     """
@@ -146,7 +150,7 @@ def assess_over(
 
 
 def _grown(history: PointHistory, growth: Iterable[Mapping[str, float]]) -> PointHistory:
-    """A history in which the stress of every case is as many times as large."""
+    """Return a history in which the stress of each case is multiplied by all its growth ratios."""
     cases = []
     for case in history.cases:
         times = prod(by_case.get(case.case, 1.0) for by_case in growth)
@@ -158,7 +162,10 @@ def _grown(history: PointHistory, growth: Iterable[Mapping[str, float]]) -> Poin
 def _method(
     spectrum: Spectrum, seen: SignedCourse, material: FatigueMaterial
 ) -> tuple[Method, str]:
-    """The method that sees the history, and the reason if it is not the requested one."""
+    """Return the method that can represent the history, and a remark on the choice.
+
+    Raises: ArgumentError, as `assess`.
+    """
     requested, curve = spectrum.method, material.curve
     if requested == "critical-plane":
         return requested, ""
@@ -183,7 +190,10 @@ def _method(
 
 
 def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> bool:
-    """Whether a history of any directions does no damage. largest: Tresca stress, Pa."""
+    """Whether no history up to a Tresca stress does damage, in whichever directions it acts.
+
+    largest: largest Tresca stress, Pa.
+    """
     if spectrum.method == "fkm-p-ram":
         assert material.fkm is not None
         both = np.array([0.0, largest, -largest, 0.0])
@@ -194,14 +204,14 @@ def _harmless(largest: float, spectrum: Spectrum, material: FatigueMaterial) -> 
 
 
 def _life(damage: float) -> float | None:
-    """Units until damage 1; None without damage."""
+    """Return the number of units until the damage is 1; None without damage."""
     return 1.0 / damage if damage > 0.0 and isfinite(damage) else (0.0 if damage else None)
 
 
 def _by_sign(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
 ) -> _MethodResult:
-    """Damage by rainflow of a signed stress and an S-N curve."""
+    """Return the damage by rainflow counting of a signed stress and an S-N curve."""
     curve, order = material.curve, flight(often)
     assert curve is not None
     cycles = rainflow(order.sequence([case_by_case(course)[0] for course in courses]))
@@ -213,7 +223,7 @@ def _by_sign(
 def _by_plane(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
 ) -> _MethodResult:
-    """Damage by Findley's critical plane."""
+    """Return the damage on Findley's critical plane."""
     curve, order = material.curve, flight(often)
     assert curve is not None
     life = curve.life(spectrum.probability)
@@ -226,7 +236,7 @@ def _by_plane(
 def _by_fkm(
     courses: list[Floats], often: list[float], spectrum: Spectrum, material: FatigueMaterial
 ) -> _MethodResult:
-    """Damage by the FKM guideline's P_RAM."""
+    """Return the damage by P_RAM of the FKM guideline."""
     order, data = flight(often), material.fkm
     assert data is not None
     sequence = order.sequence([case_by_case(course)[0] for course in courses])
@@ -234,7 +244,7 @@ def _by_fkm(
 
     damage: dict[float | None, float] = dict.fromkeys((None, *SHOWN_PROBABILITIES), 0.0)
     if sequence.any():
-        # The sequence ends at zero; lives at other probabilities follow from that at 50 %.
+        # The sequence must end at zero. Lives at other probabilities follow from the life at 50 %.
         whole = np.append(sequence, 0.0)
         middle = p_ram_life(whole, data)
         requested = middle
@@ -254,7 +264,9 @@ def _per_unit(repetitions: float, units: int) -> float:
 def _damage(
     curve: SnCurve, equivalent: Floats, units: int, probability: float | None
 ) -> dict[float | None, float]:
-    """Damage per unit at the requested probability and, with a scatter, at the reported ones."""
+    """Return the damage per unit at the requested probability and, if lives scatter, at the
+    reported ones.
+    """
     every = (None, *SHOWN_PROBABILITIES) if curve.scatter > 1.0 else (None,)
     return {
         p: curve.damage(equivalent, 1.0 / units, probability if p is None else p) for p in every
@@ -262,7 +274,7 @@ def _damage(
 
 
 def _largest(cycles: Cycles, equivalent: Floats) -> tuple[float, float]:
-    """Amplitude and mean of the cycle that is largest at stress ratio -1, Pa."""
+    """Return amplitude and mean, Pa, of the cycle with the largest equivalent amplitude."""
     if not len(equivalent):
         return 0.0, 0.0
     k = int(equivalent.argmax())
@@ -270,7 +282,9 @@ def _largest(cycles: Cycles, equivalent: Floats) -> tuple[float, float]:
 
 
 def _collective(equivalent: Floats, units: int) -> tuple[Floats, Floats]:
-    """Distinct amplitudes (C,), Pa, the largest first, and the occurrences of each per unit."""
+    """Return the distinct amplitudes (C,), Pa, the largest first, and how often each occurs per
+    unit. Small amplitudes (MIN_SHOWN_AMPLITUDE) and infinite ones are left out.
+    """
     largest = equivalent.max(initial=0.0)
     if not isfinite(largest):
         largest = float(equivalent[equivalent < inf].max(initial=0.0))

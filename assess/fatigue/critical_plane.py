@@ -1,16 +1,16 @@
-"""Findley's critical plane: shear amplitude plus a part of the largest normal stress, where worst.
+"""Findley's critical plane: shear amplitude plus a part of the largest normal stress.
 
     f = tau_a + k sigma_n,max      equivalent amplitude 2 f / (k + sqrt(1 + k^2))
 
-of every cycle of the shear stress in a direction of a plane. The equivalent amplitude is that of
-alternating tension with the same f. k is such that pulsating tension has the amplitude times 1 + M,
-with the mean stress sensitivity M: uniaxial stress of ratios -1 and 0 has the damage of the signed
-von Mises stress.
+for every cycle of the shear stress in one direction of a plane. The equivalent amplitude is that of
+alternating tension with the same f. k follows from the mean stress sensitivity M: the equivalent
+amplitude of pulsating tension is its amplitude times 1 + M. Uniaxial stress at the stress ratios -1
+and 0 therefore has the same damage as by the signed von Mises stress.
 
-The cycles are counted in all directions of all planes of a grid (assess.fatigue.many_planes). From
-each of its maxima that may be the largest, planes and directions are turned in ever smaller steps.
-Damage is within 0.5 % of what a grid of 2 degrees finds, or above it (`python -m benchmarks
-planes`).
+Cycles are counted for all directions in all planes of a grid (assess.fatigue.many_planes). The
+search then starts from each grid maximum that may lead to the largest damage, and turns plane and
+direction by ever smaller steps. The damage is not more than 0.5 % below that on a grid of 2 degrees
+(`python -m benchmarks planes`).
 
 Source: Findley, J. Eng. Ind. 81 (1959) 301.
 """
@@ -32,11 +32,11 @@ from assess.fatigue.sn_curve import Life
 from fea.core.voigt import TENSOR_TO_VOIGT
 from pinbase.arrays import Floats
 
-# Sizes of the search; `python -m benchmarks planes` compares it with a grid of 2 degrees.
+# Parameters of the search; `python -m benchmarks planes` compares it with a grid of 2 degrees.
 PLANE_STEP = 9.0  # degrees between planes of the grid
 DIRECTION_STEP = 15.0  # degrees between directions in a plane
-NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # degrees, to planes with which a maximum is compared
-STARTS_PER_RANKING = 8  # maxima from which the search starts, by each ranking
+NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # degrees; a maximum exceeds all planes within this angle
+STARTS_PER_RANKING = 8  # grid maxima from which the search starts, for each ranking
 STEP_HALVINGS = 6  # from half of PLANE_STEP to below 0.1 degrees
 FINAL_PLANES = 3  # planes whose cycles are counted one by one
 FRAME_ROTATIONS = np.array(list(product((0.0, 1.0, -1.0), repeat=3)))  # about the axes of a frame
@@ -45,9 +45,9 @@ ZERO_STRESS = np.zeros((1, 6))
 
 @dataclass(frozen=True)
 class PlaneCycles:
-    """The cycles of shear stress on the plane of a normal (3,).
+    """The cycles of shear stress on the plane with a normal (3,).
 
-    equivalent: (C,) Pa, amplitudes at stress ratio -1.
+    equivalent: (C,) equivalent amplitudes at stress ratio -1, Pa.
     """
 
     equivalent: Floats
@@ -56,7 +56,7 @@ class PlaneCycles:
 
 
 def findley_k(sensitivity: float) -> float:
-    """Findley's k for a mean stress sensitivity M from 0 to below 1."""
+    """Return Findley's k for a mean stress sensitivity M from 0 to below 1."""
 
     def excess(k: float) -> float:
         pulsating, alternating = (m * k + np.hypot(1.0, m * k) for m in (2.0, 1.0))
@@ -66,9 +66,11 @@ def findley_k(sensitivity: float) -> float:
 
 
 def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -> PlaneCycles:
-    """The plane and direction with the largest damage, or without damage the largest cycle.
+    """Return the cycles on the plane and direction with the largest damage or, if no plane is
+    damaged, with the largest equivalent amplitude.
 
-    cases: stress (T, 6), Pa, of each case.
+    cases: stress (T, 6), Pa, of each load case.
+    k: Findley's.
     life: S-N curve.
     """
 
@@ -97,9 +99,11 @@ def worst_plane(cases: Sequence[Floats], flight: Flight, k: float, life: Life) -
 
 
 def _starts(grid: Floats, on_grid: OnPlanes) -> list[int]:
-    """The maxima over neighbours on the grid, the largest ones by each ranking.
+    """Return the numbers of the grid maxima from which the search starts, the largest by each
+    ranking.
 
-    Of equal maxima one is taken; around a tension they are equal all round.
+    Of several equal maxima only one is taken: under uniaxial tension all planes around its axis are
+    equal.
     """
     normals = grid[:, 0, 0]
     near = np.abs(normals @ normals.T) > np.cos(np.radians(NEIGHBOUR_ANGLE))
@@ -120,9 +124,9 @@ def _starts(grid: Floats, on_grid: OnPlanes) -> list[int]:
 def _counted(
     tensors: Sequence[Floats], flight: Flight, plane: tuple[Floats, Floats], k: float
 ) -> PlaneCycles:
-    """The cycles on one plane, counted by rainflow, with the largest normal stress within each.
+    """Return the cycles on one plane by rainflow counting, with the largest normal stress in each.
 
-    tensors: stress (T, 3, 3), Pa, of each case, with zero before and after.
+    tensors: stress (T, 3, 3), Pa, of each load case, with a zero stress before and after it.
     plane: normal and direction.
     """
     normal, way = plane
@@ -143,10 +147,12 @@ def _counted(
 
 @cache
 def _grid() -> Floats:
-    """Normals of planes on a half sphere, directions in them, and across both: (P, D, 3, 3)."""
+    """Return frames (P, D, 3, 3) for P planes over a hemisphere and D directions in each. The rows
+    of a frame are the normal, the direction, and the vector perpendicular to both.
+    """
     polar, turn = [], []
     for a in np.radians(np.arange(0.0, 90.0 + 0.5 * PLANE_STEP, PLANE_STEP)):
-        # With the planes at 45 degrees to the axes.
+        # A multiple of 8, so that the planes at 45 degrees to the axes are included.
         count = 8 * round(360.0 * np.sin(a) / PLANE_STEP / 8.0) or 1
         polar += [a] * count
         turn += (2.0 * np.pi * np.arange(count) / count).tolist()

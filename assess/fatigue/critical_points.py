@@ -1,14 +1,14 @@
-"""The few points of a pin at which fatigue is assessed, and the stress there over all cases.
+"""The few points of a pin at which fatigue is assessed, and the stress there over all load cases.
 
-Damage follows the range of stress, not its peak, and is larger where the mean is tensile. So the
-surface is searched for local maxima of `a + 0.3 m` over all cases, zero load included: m is the
-signed von Mises stress of the tensor in the middle of the range of each component, and a the
-largest von Mises stress of the difference from it, which registers stress that changes its sign or
-its direction. Singular zones are left out; where lugs press on the pin, points have the stress
-given by fea.harmonic.fatigue_points. The points of the largest von Mises stress are added.
+Damage depends on the range of stress, not on its peak, and is larger where the mean is tensile.
+The surface is therefore searched for local maxima of `a + 0.3 m` over all cases, including zero
+load. m is the signed von Mises stress of the tensor at the middle of the range of each component; a
+is the largest von Mises stress of the difference from this tensor, which also measures stress that
+changes its sign or direction. Singular zones are left out. Where lugs press on the pin, the stress
+is that of fea.harmonic.fatigue_points. The points of the largest von Mises stress are added.
 
-One mesh is searched, that of the case with the largest stress; on other cases' meshes the nearest
-node is read.
+Only the mesh of the case with the largest stress is searched; on the meshes of other cases the
+nearest node is read.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from fea.core.voigt import von_mises
 from fea.support.support import Solution
 from pinbase.arrays import Floats, Ints
 
-# The search is coarse first, then fine at its maxima. Its sizes are chosen by judgement.
+# The search is first coarse, then fine at the maxima found. These values are chosen by judgement.
 SEARCH_ANGLES, FINAL_ANGLES = 16, 72  # angles about the axis
 SEARCH_INSTANTS, FINAL_INSTANTS = 12, 48  # instants of each case
 MEAN_STRESS_SENSITIVITY = 0.3  # usual mean stress sensitivity of steel
 MAX_POINTS = 4  # local maxima that are assessed
-MIN_SCORE = 0.3  # of the largest score: points below it are no candidates
-MIN_SPACING = 0.25  # of the distance from the axis, between local maxima
-MERGE_DISTANCE = 0.05  # of the distance from the axis: nearer points are one
-STRIDE = 2  # one point of the surface in so many is searched
+MIN_SCORE = 0.3  # relative to the largest score: points below it are not candidates
+MIN_SPACING = 0.25  # between local maxima, relative to the distance from the axis
+MERGE_DISTANCE = 0.05  # relative to the distance from the axis: closer points are merged
+STRIDE = 2  # every second point of the surface is searched
 MAX_CANDIDATES = 500  # points whose neighbours are compared
-NEIGHBOURS = 9  # points about a local maximum that are compared at all angles
-SCORE_BATCH = 16_384  # points and angles, times cases, at once: limits memory
+NEIGHBOURS = 9  # points around a local maximum that are compared at all angles
+SCORE_BATCH = 16_384  # points and angles, times cases, processed at once; limits memory
 
 
-MIN_STRESS_SUM = 1e-9  # of the von Mises stress: a smaller sum of principal stresses is zero
+MIN_STRESS_SUM = 1e-9  # relative to the von Mises stress: a smaller sum of principal stresses is 0
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,13 @@ class _Case:
     known: StressPoints
 
     def instants(self, most: int) -> Ints:
-        """Some, evenly, with the governing one."""
+        """Return the numbers of at most `most` evenly spaced instants, plus the governing one."""
         even = np.linspace(0, self.known.count - 1, most).round().astype(np.int64)
         return np.unique(np.append(even, self.solution.instant))
 
 
 def stress_histories(pin: str, solutions: Sequence[Solution]) -> tuple[PointHistory, ...]:
-    """The stress histories at the critical points of a pin; none where no case was solved."""
+    """Return the stress histories at the critical points of a pin; empty if no case was solved."""
     cases = [
         _Case(solution, solution.answer.points(solution.loads))
         for solution in solutions
@@ -89,7 +89,7 @@ def _tuple(point: Floats) -> tuple[float, float, float]:
 
 
 def _at(place: _Place, cases: Sequence[_Case]) -> tuple[CaseHistory, ...]:
-    """The stress of every case at a place."""
+    """Return the stress of every case at a place."""
     histories = []
     for case in cases:
         known, loads = case.known, case.solution.loads
@@ -101,7 +101,7 @@ def _at(place: _Place, cases: Sequence[_Case]) -> tuple[CaseHistory, ...]:
 
 
 def _places(cases: Sequence[_Case]) -> list[_Place]:
-    """The critical places, those that nearly coincide merged."""
+    """Return the critical places; places that nearly coincide are merged."""
     out: list[_Place] = []
     for place in (*_local_maxima(cases), *_governing(cases)):
         near = MERGE_DISTANCE * float(np.hypot(*place.point[:2]))
@@ -111,7 +111,7 @@ def _places(cases: Sequence[_Case]) -> list[_Place]:
 
 
 def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """The places of the largest von Mises stress of the surface, by case; none of idle ones."""
+    """Yield the place of the largest von Mises stress of the surface, for each case with stress."""
     for case in cases:
         peak = case.solution.peak
         at = peak.location if peak.places is None else peak.places.surface.location
@@ -126,7 +126,7 @@ def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
 
 
 def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """The places of the local maxima of the score, the largest first."""
+    """Yield the places of the local maxima of the score, the largest first."""
     base = max(cases, key=lambda case: case.solution.peak.max_von_mises or 0.0).known
     rows = np.flatnonzero(base.surface)
     if not len(rows):
@@ -139,7 +139,7 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
     for k in order:
         if len(chosen) == MAX_POINTS or score[k] <= MIN_SCORE * score[order[0]]:
             return
-        # A candidate with a better or an already chosen neighbour is no local maximum of its own.
+        # A candidate near a better point or near a chosen one is not a separate local maximum.
         near = tree.query_ball_point(points[k], MIN_SPACING * radius[k])
         if score[near].max() > score[k] or set(near) & set(chosen):
             continue
@@ -154,11 +154,11 @@ def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
 
 
 def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) -> Floats:
-    """Amplitude plus a part of the mean, (P, A), Pa, over all cases, zero load included.
+    """Return the score (P, A), Pa: amplitude plus a part of the mean, over all cases and zero load.
 
     points: (P, 3) m.
     turns: number A of angles about the axis.
-    instants: of each case, at most.
+    instants: the largest number of instants of each case.
     """
     turns = turns if cases[0].known.revolved else 1
     angles = np.tile(2.0 * np.pi * np.arange(turns) / turns, len(points))
@@ -177,19 +177,19 @@ def _score(cases: Sequence[_Case], points: Floats, turns: int, instants: int) ->
 
 
 def _nearest(known: StressPoints, points: Floats) -> Ints:
-    """Rows of the known points nearest to points (P, 3)."""
+    """Return the numbers of the known points that are nearest to points (P, 3)."""
     return np.asarray(KDTree(known.points).query(points)[1], dtype=np.int64)
 
 
 def signed_von_mises(stress: Floats) -> Floats:
-    """The von Mises stress (...) of stresses (..., 6), signed.
+    """Return the von Mises stress (...) of stresses (..., 6), with the sign of the principal stress
+    of largest magnitude.
 
-    The sign is that of the principal stress that is largest by magnitude.
-
-    The largest and smallest principal stress sum to 2 p - 2 sqrt(J2 / 3) cos(lode - 2 pi / 3),
-    whose sign is that of the larger one. In pure shear both are equal and the sign is open; it is
-    positive here, so that alternating torsion shows half its range: the critical plane sees all of
-    it. Source of the invariants: Chen, Han, Plasticity for Structural Engineers (1988), 2.2.
+    The largest and the smallest principal stress sum to 2 p - 2 sqrt(J2 / 3) cos(lode - 2 pi / 3),
+    and the sign of this sum is the sign of the larger one in magnitude. In pure shear both are
+    equal in magnitude and the sign is ambiguous. It is positive here, so that alternating torsion
+    has only half its range; the critical plane registers the full range. Source of the invariants:
+    Chen, Han, Plasticity for Structural Engineers (1988), 2.2.
     """
     size = von_mises(stress)
     xx, yy, zz, yz, xz, xy = np.moveaxis(stress, -1, 0)

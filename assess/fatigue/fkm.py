@@ -25,13 +25,13 @@ PA_PER_MPA, M_PER_MM = 1e6, 1e-3
 
 @dataclass(frozen=True)
 class FkmMaterial:
-    """Data of a material and a notch for the FKM guideline.
+    """The data of a material and a notch for the FKM guideline.
 
     ultimate: R_m, Pa.
     roughness: R_z, m.
-    plastic: K_p, limit load over the load at yield.
+    plastic: K_p, the ratio of the limit load to the load at first yield.
     area, gradient: highly stressed surface (m^2) and related stress gradient (1/m), which give the
-    notch its support; none by default.
+    notch support; no support by default.
     """
 
     group: MaterialGroup
@@ -44,11 +44,11 @@ class FkmMaterial:
 
 @dataclass(frozen=True)
 class FkmLife:
-    """Cycles and repetitions of the sequence until failure.
+    """The cycles, and the repetitions of the sequence, until failure.
 
-    infinite: below the endurance limit.
-    at: repetitions by failure probability, from the scatter of the guideline without its least
-    safety factor; only for a life at 50 %.
+    infinite: whether the sequence is below the endurance limit.
+    at: a function from a failure probability to the repetitions, by the scatter of the guideline
+    without its minimum safety factor; only for a life at 50 %, else None.
     """
 
     cycles: float
@@ -63,11 +63,12 @@ def p_ram_life(
     probability: float = 0.5,
     loads: tuple[float, float | None] = (50.0, None),
 ) -> FkmLife:
-    """The life of a point under a sequence of elastic stress (T,), Pa, that is repeated.
+    """Return the life of a point under a repeated sequence of elastic stress.
 
-    probability: of failure, at most 50 %.
-    loads: probability P_L (%) that loads do not exceed the sequence, and their standard deviation
-    (Pa).
+    sequence: (T,) Pa.
+    probability: failure probability, at most 0.5.
+    loads: probability P_L (%) that the loads do not exceed the sequence, and the standard deviation
+    of the loads (Pa).
     """
     import pandas
     from pylife.strength.fkm_nonlinear.assessment_nonlinear_standard import (
@@ -87,7 +88,7 @@ def p_ram_life(
 
     def at(wanted: float) -> float:
         with quiet():
-            bearable(wanted)  # which leaves the damage at this probability
+            bearable(wanted)  # stores the damage at this probability in the calculator
         calculated = assessment["P_RAM_damage_calculator"].collective
         return _repetitions(calculated, calculated["D"].to_numpy(dtype=float))
 
@@ -102,11 +103,12 @@ def p_ram_life(
 
 
 def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
-    """Repetitions of the sequence until failure, by equation 2.6-90 of the guideline.
+    """Return the repetitions of the sequence until failure, by equation 2.6-90 of the guideline.
 
-    damage: (C,) of the cycles in the first and the second run. Within these runs the part of their
-    damage counts, for which pyLife has no rule. A cycle in compression, without P_RAM, does no
-    damage.
+    If failure occurs within the first or the second run, a fraction of that run counts; pyLife has
+    no rule for this. A cycle in compression has no P_RAM and does no damage.
+
+    damage: (C,) of the cycles in the first and the second run.
     """
     run = cycles["run_index"].to_numpy()
     first, second = (float(np.nansum(damage[run == n])) for n in (1, 2))
@@ -116,7 +118,7 @@ def _repetitions(cycles: pandas.DataFrame, damage: Floats) -> float:
 
 
 def _parameters(material: FkmMaterial) -> dict[str, object]:
-    """The parameters by pyLife's names, in MPa and mm."""
+    """Return the parameters under pyLife's names, in MPa and mm (R_z in micrometres)."""
     return {
         "MatGroupFKM": material.group,
         "FinishingFKM": "none",

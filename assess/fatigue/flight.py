@@ -1,10 +1,10 @@
-"""The sequence of stress of a unit of the spectrum (a flight, say), and its cycles.
+"""The stress sequence of one unit of the spectrum (for example a flight), and its cycles.
 
-Every case begins and ends at zero load: the ground-air-ground cycle. So a static case is a pulse
-0, peak, 0, and a motion begins and ends with a step. Cases of a unit follow each other in the order
-of the spectrum, and rainflow counting closes cycles across them; one that occurs less than once in
-a unit does so in every so many of them. The sequence is repeated, and cycles are counted in the
-last of several passes.
+Every load case begins and ends at zero load: the ground-air-ground cycle. A static case is
+therefore a pulse 0, peak, 0, and a motion begins and ends with a step. The cases of a unit follow
+each other in the order of the spectrum, and rainflow counting closes cycles across cases. A case
+that occurs less than once per unit occurs once in several units. The sequence is repeated, and
+cycles are counted in the last of several passes.
 
 Source of the counting: four-point rainflow, ASTM E1049-85 (2017), by pyLife.
 """
@@ -22,19 +22,19 @@ import numpy as np
 from pinbase.arrays import Floats, Ints
 from pinbase.errors import ArgumentError
 
-MAX_REPEAT_UNITS = 1000  # units until the spectrum repeats itself
-MAX_SEQUENCE_CASES = 10_000
-OCCURRENCE_TOLERANCE = 1e-9  # relative, of an occurrence from its fraction
-RAINFLOW_PASSES = 3  # passes through the sequence, of which the last is counted
+MAX_REPEAT_UNITS = 1000  # largest number of units until the spectrum repeats itself
+MAX_SEQUENCE_CASES = 10_000  # largest number of cases until then
+OCCURRENCE_TOLERANCE = 1e-9  # relative difference of an occurrence from its fraction
+RAINFLOW_PASSES = 3  # passes through the sequence; only the last is counted
 
 
 @dataclass(frozen=True)
 class Flight:
-    """The order of cases until the spectrum repeats itself.
+    """The order of load cases until the spectrum repeats itself.
 
-    order: their numbers.
-    units: how many units these are.
-    ends: of each unit in the order; by default there is one.
+    order: the numbers of the cases.
+    units: how many units the order covers.
+    ends: the position in `order` where each unit ends; by default the order is one block.
     """
 
     order: tuple[int, ...]
@@ -43,12 +43,12 @@ class Flight:
 
     @property
     def each(self) -> Iterator[tuple[int, ...]]:
-        """The cases of one unit after the other."""
+        """The cases of each unit, unit by unit."""
         ends = self.ends or (len(self.order),)
         return (self.order[a:b] for a, b in pairwise((0, *ends)))
 
     def sequence(self, cases: Sequence[Floats]) -> Floats:
-        """The values of all cases in their order, joined."""
+        """Return the values of all cases, concatenated in their order."""
         return np.concatenate([cases[k] for k in self.order])
 
 
@@ -57,8 +57,8 @@ class Cycles:
     """The cycles of a sequence.
 
     amplitude, mean: (C,) Pa.
-    first, last: (C,) places, in the sequence repeated RAINFLOW_PASSES times, between which each
-    cycle is.
+    first, last: (C,) positions of the two ends of each cycle in the sequence repeated
+    RAINFLOW_PASSES times.
     """
 
     amplitude: Floats
@@ -68,10 +68,10 @@ class Cycles:
 
 
 def flight(occurrences: Sequence[float]) -> Flight:
-    """The order of cases with these occurrences per unit.
+    """Return the order of load cases with given occurrences per unit.
 
-    Raises: ArgumentError where occurrences are no fractions of 1000 or fewer units
-    (`not-a-fraction`), or the sequence is too long (`too-many-occurrences`).
+    Raises: ArgumentError if the occurrences do not repeat within 1000 units (`not-a-fraction`), or
+    if the sequence is too long (`too-many-occurrences`).
     """
     exact = [Fraction(n).limit_denominator(MAX_REPEAT_UNITS) for n in occurrences]
     units = lcm(*(n.denominator for n in exact))
@@ -107,7 +107,7 @@ def flight(occurrences: Sequence[float]) -> Flight:
 
 
 def turning_points(values: Floats) -> Ints:
-    """Numbers of the first, the last and all turning points of a history (T,)."""
+    """Return the positions of the first, the last and all turning points of a history (T,)."""
     rows = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
     slope = np.sign(np.diff(values[rows]))
     inner = rows[1:-1][slope[1:] != slope[:-1]]
@@ -115,9 +115,10 @@ def turning_points(values: Floats) -> Ints:
 
 
 def case_by_case(course: Floats) -> tuple[Floats, Ints]:
-    """The turning points of a case's history (T,), which starts from zero and returns to it.
+    """Return the turning points of a case's history (T,), which starts from zero and returns to it,
+    and their positions in the history with a zero added before and after it.
 
-    The last zero is left out. Also their places in the history with a zero before and after it.
+    The values omit the final zero; the positions include it.
     """
     whole = np.concatenate([[0.0], course, [0.0]])
     turns = turning_points(whole)
@@ -125,7 +126,7 @@ def case_by_case(course: Floats) -> tuple[Floats, Ints]:
 
 
 def rainflow(sequence: Floats) -> Cycles:
-    """The cycles of a sequence (T,) that begins at zero and repeats itself."""
+    """Return the cycles of a sequence (T,) that begins at zero and repeats itself."""
     from pylife.stress.rainflow import FourPointDetector, FullRecorder
 
     recorder = FullRecorder()

@@ -1,9 +1,9 @@
-"""Damage on many planes and in many directions at once, for a search among them.
+"""Damage on many planes and in many directions at once, for the search of the critical plane.
 
-Rainflow cannot be vectorised over the instants, but over the planes: all of them take a step at the
-same time, each with its own stack of turning points. Repeated parts of the spectrum are counted
-three times at most, the third time for all others: from then on four-point counting closes the same
-cycles every time.
+Rainflow counting cannot be vectorised over the instants, but it can over the planes: all planes
+advance by one step together, each with its own stack of turning points. A repeated part of the
+spectrum is counted at most three times; the third count stands for all later repetitions, because
+from then on four-point counting closes the same cycles every time.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from assess.fatigue.flight import RAINFLOW_PASSES, Flight
 from assess.fatigue.sn_curve import Life
 from pinbase.arrays import Floats, Ints, Mask
 
-PLANE_INSTANT_BATCH = 1_000_000  # planes times instants at once: limits memory
-MIN_SHEAR_STEP = 1e-6  # of the largest shear stress of a case: smaller steps are round-off
-INITIAL_STACK_DEPTH = 16  # turning points that a stack holds at first
+PLANE_INSTANT_BATCH = 1_000_000  # planes times instants processed at once; limits memory
+MIN_SHEAR_STEP = 1e-6  # relative to the largest shear stress of a case: smaller is round-off
+INITIAL_STACK_DEPTH = 16  # turning points for which a stack has room at first
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class OnPlanes:
-    """The damage (M,) on planes until the spectrum repeats itself.
+    """The damage (M,) on M planes until the spectrum repeats itself.
 
-    softer: the same with a knee that is lower by SOFTENED_KNEE_RATIO (sn_curve).
-    largest: equivalent amplitude, Pa.
+    softer: (M,) the damage if the knee were lowered by SOFTENED_KNEE_RATIO (sn_curve).
+    largest: (M,) largest equivalent amplitude, Pa.
     """
 
     damage: Floats
@@ -39,16 +39,17 @@ class OnPlanes:
     largest: Floats
 
     def order(self) -> Ints:
-        """Numbers of the planes, the worst first."""
+        """Return the numbers of the planes, the worst first."""
         return np.lexsort((-self.largest, -self.damage))
 
 
 def on_planes(
     cases: Sequence[Floats], flight: Flight, planes: tuple[Floats, Floats], k: float, life: Life
 ) -> OnPlanes:
-    """Damage on planes with normals (M, 3) and directions of the shear stress in them (M, 3).
+    """Return the damage on M planes, each with one direction of the shear stress.
 
-    cases: stress (T, 6), Pa, of each, which begins and ends at zero.
+    cases: stress (T, 6), Pa, of each load case, which begins and ends at zero.
+    planes: normals (M, 3) and directions (M, 3).
     k: Findley's.
     life: S-N curve.
     """
@@ -60,8 +61,8 @@ def on_planes(
         here = slice(start, start + size)
         across, along = _components(normals[here], ways[here]), _components(normals[here])
         count = _Count(len(across), k, life)
-        # Cycles that close within a case are counted once for all its occurrences; what is left of
-        # its turning points then goes through the whole spectrum.
+        # Cycles that close within a case are counted once for all its occurrences. The turning
+        # points that remain open then go through the whole spectrum.
         left = [
             count.alone(_turns(across @ stress.T, along @ stress.T), flight.order.count(case))
             for case, stress in enumerate(cases)
@@ -75,9 +76,9 @@ def on_planes(
 
 
 def _components(normals: Floats, ways: Floats | None = None) -> Floats:
-    """The weights (M, 6) of stress components in the stress along `ways` on planes.
+    """Return the weights (M, 6) of the stress components in the traction on planes along `ways`.
 
-    By default along their normals.
+    ways: directions (M, 3), by default the normals.
     """
     a, b = normals.T, (normals if ways is None else ways).T
     shear = [a[i] * b[j] + a[j] * b[i] for i, j in ((1, 2), (0, 2), (0, 1))]
@@ -85,17 +86,19 @@ def _components(normals: Floats, ways: Floats | None = None) -> Floats:
 
 
 def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
-    """Turning points of shear stress and the largest normal stress up to the next, (K, M).
+    """Return the turning points of the shear stress and, for each, the largest normal stress up to
+    the next one, (K, M) each.
 
-    shear, normal: (M, T) Pa. They start from zero and return to it, without the last zero; shorter
-    rows are filled up with the last point.
+    The histories start from zero and return to it; the final zero is omitted. Planes with fewer
+    turning points repeat their last one.
+    shear, normal: (M, T) Pa.
     """
     zero = np.zeros((len(shear), 1))
     grain = MIN_SHEAR_STEP * float(np.abs(shear).max(initial=0.0)) or 1.0
     whole = np.concatenate([zero, np.round(shear / grain) * grain, zero], axis=1)
     top = np.concatenate([zero, normal, zero], axis=1)
     slope = np.sign(np.diff(whole, axis=1)).astype(np.int8)
-    ahead = slope.copy()  # that of the next step that is one
+    ahead = slope.copy()  # the slope of the next step that is not zero
     for t in range(ahead.shape[1] - 2, -1, -1):
         ahead[:, t] = np.where(ahead[:, t], ahead[:, t], ahead[:, t + 1])
     turn = np.ones(whole.shape, dtype=bool)
@@ -114,14 +117,16 @@ def _turns(shear: Floats, normal: Floats) -> tuple[Floats, Floats]:
 
 
 def _blocks(flight: Flight) -> Iterator[tuple[int, int]]:
-    """Cases in their order, and how many times their cycles count."""
+    """Yield the cases in their order, and how many times their cycles count."""
     for unit, often in _thrice(flight.each):
         for case, n in _thrice(unit):
             yield case, often * n
 
 
 def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
-    """Each item of a run once, at most three of them, the last of which stands for the rest."""
+    """Yield the items with their weights; of a run of equal items at most three are yielded, and
+    the third has the weight of all that remain.
+    """
     for item, run in groupby(items):
         n = sum(1 for _ in run)
         yield from ((item, 1) for _ in range(min(n, 2)))
@@ -130,10 +135,11 @@ def _thrice(items: Iterable[T]) -> Iterator[tuple[T, int]]:
 
 
 class _Count:
-    """Four-point rainflow of M histories side by side.
+    """Four-point rainflow counting of M histories in parallel.
 
-    Each has a stack of turning points that are still open: `value` (depth, M), with the largest
-    normal stress up to the next point of the history, `raw`, and up to the next open point, `top`.
+    Each history has a stack of turning points that are still open: their values, `_value`
+    (depth, M), the largest normal stress up to the next point of the history, `_raw`, and the
+    largest normal stress up to the next open point, `_top`.
     """
 
     def __init__(self, size: int, k: float, life: Life) -> None:
@@ -145,9 +151,9 @@ class _Count:
         self.totals = np.zeros(size), np.zeros(size), np.zeros(size)
 
     def alone(self, turns: tuple[Floats, Floats], often: int) -> tuple[Floats, Floats, Floats]:
-        """Count the cycles that close within a case wherever it occurs, `often` times.
+        """Count the cycles that close within a case, which occurs `often` times.
 
-        Returns what is left of its turning points for `step`, (K, M) each.
+        Return the arguments of `step` for the turning points that remain open, (K, M) each.
         """
         within = _Count(len(self._n), self._k, self._life)
         within.totals = self.totals
@@ -161,15 +167,16 @@ class _Count:
         return value, raw, top
 
     def step(self, x: Floats, raw: Floats, top: Floats, weight: int) -> None:
-        """Advance to the next value of each history.
+        """Advance each history by one value.
 
-        x, raw, top: (M,).
-        weight: how many times the cycles that it closes count.
+        x: (M,) the values, Pa.
+        raw, top: (M,) normal stresses as in `_Count`.
+        weight: how many times the cycles closed by this step count.
         """
         n = self._n
         every = np.arange(len(n))
-        last = self._value[n - 1, every]  # what it is without any does not matter
-        # A repeated value raises the normal stress alone; one further in the same direction
+        last = self._value[n - 1, every]  # not used where the stack is empty
+        # A repeated value only raises the normal stress; a value farther in the same direction
         # replaces the last point; a reversal may close cycles.
         same = (n > 0) & (x == last)
         onward = ~same & (n > 1) & ((x - last) * (last - self._value[n - 2, every]) > 0.0)
@@ -183,13 +190,13 @@ class _Count:
         self._push(np.flatnonzero(~same), x, raw, top)
 
     def _raise(self, kind: Floats, which: Mask, back: int, top: Floats) -> None:
-        """Raise entries of a stack, `back` from its top, to at least `top`."""
+        """Raise the entries of a stack that are `back` below its end to at least `top`."""
         at = np.flatnonzero(which)
         row = self._n[at] - back
         kind[row, at] = np.maximum(kind[row, at], top[at])
 
     def _push(self, at: Ints, x: Floats, raw: Floats, top: Floats) -> None:
-        """Push a point on the stacks, which grow if needed."""
+        """Push a point on the stacks of the histories `at`; the arrays grow if needed."""
         row = self._n[at]
         if len(at) and row.max() >= len(self._value):
             more = ((0, len(self._value)), (0, 0))
@@ -200,9 +207,9 @@ class _Count:
         self._n[at] += 1
 
     def _close(self, at: Ints, weight: int) -> Ints:
-        """Remove the cycle before the last point of each history, where there is one.
+        """Close the cycle before the last point of each history, if there is one.
 
-        Returns the histories that may have another one.
+        Return the histories that may have another cycle to close.
         """
         n = self._n[at]
         a, b, c, d = (self._value[n - j, at] for j in (4, 3, 2, 1))
@@ -221,7 +228,7 @@ class _Count:
         return at[n > 5]
 
     def _add(self, at: Ints, findley: Floats, weight: int) -> None:
-        """Add the damage of cycles with Findley's f to the totals."""
+        """Add the damage of cycles with Findley's f, Pa, to the totals."""
         equivalent = 2.0 / (self._k + np.hypot(1.0, self._k)) * findley
         damage, softer, largest = self.totals
         damage[at] += weight * self._life.damage(equivalent)

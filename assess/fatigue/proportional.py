@@ -1,14 +1,14 @@
-"""Whether a single signed stress represents a history of all its components.
+"""The test whether a single signed stress represents a history of all stress components.
 
-A rule for such a history takes the stress at every instant as a multiple of one tensor. The
-deviator times sqrt(3/2), whose length is the von Mises stress, should then move on a line through
-zero: `unseen` is its largest distance from the place on that line where the rule takes it to be,
-over the largest von Mises stress. It is 2 where the sign of a torsion does not register, and about
+A signed stress assumes that the stress at every instant is a multiple of one tensor. The deviator
+times sqrt(3/2), whose length is the von Mises stress, then moves on a line through zero. `unseen`
+is the largest distance of this deviator from the point on the line where the signed stress places
+it, relative to the largest von Mises stress. It is 2 where the sign of a torsion is lost, and about
 1.4 for components 90 degrees out of phase.
 
-In pure shear the principal stresses are equal, so that neither gives the von Mises stress its sign
-(assess.fatigue.critical_points). There the side of zero on the line does; the larger side counts as
-tension, the safe choice.
+In pure shear the principal stresses are equal in magnitude, so that neither of them gives the von
+Mises stress a sign (assess.fatigue.critical_points). The side of zero on the line gives the sign
+instead; the side with the larger stress counts as tension, which is the safe choice.
 """
 
 from __future__ import annotations
@@ -22,17 +22,18 @@ from assess.fatigue.records import CaseHistory
 from fea.core.voigt import VON_MISES, von_mises
 from pinbase.arrays import Floats
 
-MAX_RULE_ERROR = 0.05  # of the largest stress, allowed error of a rule; chosen by judgement
+MAX_RULE_ERROR = 0.05  # allowed `unseen`; chosen by judgement
 SIGNED_SHEAR_RULE = "alternating shear, signed by its direction"
 
 
 @dataclass(frozen=True)
 class SignedCourse:
-    """Signed stress (T,), Pa, of each case.
+    """The signed stress of a history.
 
-    largest: von Mises stress, Pa.
-    unseen: error of the representation, over that.
-    note: how it was signed, if not by the largest principal stress.
+    cases: signed stress (T,), Pa, of each load case.
+    largest: largest von Mises stress, Pa.
+    unseen: error of the representation, relative to `largest`.
+    note: the rule of the sign, if it is not that of the largest principal stress.
     """
 
     cases: list[Floats]
@@ -42,12 +43,12 @@ class SignedCourse:
 
     @property
     def stands(self) -> bool:
-        """Whether it represents the history."""
+        """Whether the signed stress represents the history."""
         return self.unseen <= MAX_RULE_ERROR
 
 
 def course(cases: Sequence[CaseHistory]) -> SignedCourse:
-    """The signed stress of all cases of a history; its error is for the caller to judge."""
+    """Return the signed stress of all cases of a history; the caller must judge its error."""
     stress = np.concatenate([case.stress for case in cases])
     signed = np.concatenate([case.signed for case in cases])
     size = von_mises(stress)
@@ -56,7 +57,7 @@ def course(cases: Sequence[CaseHistory]) -> SignedCourse:
         return SignedCourse([case.signed for case in cases], 0.0, 0.0)
     values, vectors = np.linalg.eigh(VON_MISES)
     deviator = stress @ (vectors * np.sqrt(np.maximum(values, 0.0)))  # (T, 6)
-    # The line through zero that fits the deviators best: their first principal direction.
+    # The line through zero that best fits the deviators: their first principal direction.
     line = np.linalg.svd(deviator, full_matrices=False)[2][0]
     place = deviator @ line
     side = np.sign(place[np.abs(place).argmax()])

@@ -1,4 +1,4 @@
-"""Calls of pyLife without its printing and warnings; what matters of them is in the results."""
+"""Calls of pyLife without its output and warnings; everything relevant is in the results."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from contextlib import contextmanager, redirect_stdout
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """A context without warnings and printing.
+    """Suppress warnings and printing within a context.
 
-    pyLife 2.3 uses what pandas 3 deprecates, takes roots of negative numbers for cycles in
-    compression, and prints hints on P_RAJ.
+    pyLife 2.3 uses functions that pandas 3 deprecates, takes roots of negative numbers for cycles
+    in compression, and prints hints on P_RAJ.
     """
     with warnings.catch_warnings(), redirect_stdout(io.StringIO()):
         warnings.simplefilter("ignore")

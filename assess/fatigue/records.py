@@ -1,4 +1,4 @@
-"""Results of fatigue: histories of stress at points, and the damage there."""
+"""Results of the fatigue assessment: stress histories at points, and the damage there."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 from pinbase.dimensions import Floats, Point, Stress, Stresses, Times
 
-ERROR_OF_STRESS = "error"  # the numerical error of the stress, among what is open of it
+ERROR_OF_STRESS = "error"  # the numerical error, as one of the uncertainties of the stress
 
 
 @dataclass(frozen=True)
 class CaseHistory:
-    """The stress at a point in one case.
+    """The stress at a point in one load case.
 
     stress: (T, 6) Pa; rr, tt, zz, tz, rz, rt for a body of revolution; xx, yy, zz, yz, xz, xy for
     any other.
@@ -45,7 +45,7 @@ class PointHistory:
     cylindrical: bool = False
 
     def in_pin_axes(self, direction: Floats) -> tuple[float, float, float]:
-        """A direction (3,) in the pin's axes, from one in the axes of the stresses."""
+        """Return a direction in the pin's axes. direction: (3,) in the axes of the stresses."""
         first, second, z = direction.tolist()
         angle = math.atan2(self.location[1], self.location[0]) if self.cylindrical else 0.0
         c, s = math.cos(angle), math.sin(angle)
@@ -54,22 +54,22 @@ class PointHistory:
 
 @dataclass(frozen=True)
 class PointFatigue:
-    """Damage at a point per unit of the spectrum (a flight, say).
+    """The fatigue damage at a point per unit of the spectrum (for example per flight).
 
-    It is for the failure probability that the study requests.
-    life: units until damage 1, None without damage.
-    lives: the same at 10, 50 and 90 %, empty without a scatter.
-    utilisation: damage times the design life.
-    amplitude, mean: of the largest cycle, uncorrected.
-    amplitudes: (C,) Pa, of all cycles that may do damage, corrected for the mean, the largest
-    first.
-    counts: of each per unit.
-    method: of the equivalent stress.
+    damage: for the failure probability that the study requests.
+    life: units until the damage is 1; None without damage.
+    lives: the lives at failure probabilities of 10, 50 and 90 %; empty without a scatter.
+    utilisation: damage times the design life; None without a design life.
+    amplitude, mean: of the largest cycle, not corrected for the mean stress.
+    amplitudes: (C,) Pa, of all cycles that may do damage, corrected for the mean stress, the
+    largest first.
+    counts: (C,) how often each amplitude occurs per unit.
+    method: the method of the equivalent stress.
     note: remarks on the assessment.
-    normal: of the critical plane, in the pin's axes; amplitude and mean are then those of its shear
-    stress.
-    largest_damage: over the error of the stress and all ranges that the study leaves open; None
-    where there are none. damage_over: over each of them.
+    normal: normal of the critical plane, in the pin's axes; amplitude and mean are then those of
+    the shear stress on this plane.
+    largest_damage: the largest damage over the error of the stress and all ranges that the study
+    leaves open together; None if there are none. damage_over: the damage over each of them alone.
     """
 
     pin: str
@@ -91,7 +91,11 @@ class PointFatigue:
     damage_over: Mapping[str, float] = field(default_factory=dict)
 
     def open_beyond(self, damage: float) -> tuple[str, ...]:
-        """Names of what is open that takes the damage beyond one not reached as described."""
+        """Return the names of the uncertainties that raise the damage above a given one.
+
+        damage: a damage that the pin as described does not exceed; if it does, the result is empty.
+        If no uncertainty alone raises the damage so far, but all together do, all are named.
+        """
         if not self.damage <= damage < (self.largest_damage or 0.0):
             return ()
         alone = tuple(what for what, over in self.damage_over.items() if over > damage)

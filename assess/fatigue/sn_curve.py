@@ -1,10 +1,10 @@
-"""Stress-life (Woehler) curves, mean stress and linear damage.
+"""Stress-life (Woehler) curves, mean stress correction and linear damage accumulation.
 
-N = N_D (S_a / S_D)^-k for the amplitude S_a at stress ratio -1, with another slope below the knee,
-by default none: amplitudes below S_D do no damage. Lives scatter lognormally, by T_N = N_90 % /
-N_10 %. Damage is Palmgren and Miner's sum of n / N.
+N = N_D (S_a / S_D)^-k for the amplitude S_a at stress ratio -1. Below the knee another slope may
+hold; by default amplitudes below S_D do no damage. Lives scatter lognormally with T_N = N_90 % /
+N_10 %. Damage is the Palmgren-Miner sum of n / N.
 
-Mean stress, as the equivalent amplitude at stress ratio -1:
+The mean stress is accounted for by an equivalent amplitude at stress ratio -1:
 
     fkm      Haigh diagram of four segments, M and M / 3      FKM guideline (2020), 4.4.2; pyLife
     goodman  S_a / (1 - S_m / R_m), from tension only         Goodman (1899)
@@ -29,28 +29,30 @@ if TYPE_CHECKING:
 
 MeanStress = Literal["none", "fkm", "goodman", "swt", "walker"]
 
-SOFTENED_KNEE_RATIO = 0.95  # of the knee's amplitude: ranks planes that do no damage
+SOFTENED_KNEE_RATIO = 0.95  # ratio by which the knee is lowered to rank planes without damage
 
 
 @dataclass(frozen=True)
 class Life:
-    """An S-N curve at one failure probability, for many cycles in little time.
+    """An S-N curve at one failure probability, for the fast evaluation of many cycles.
 
     knee: amplitude, Pa, and cycles.
-    slopes: above and below it.
+    slopes: above and below the knee.
     """
 
     knee: tuple[float, float]
     slopes: tuple[float, float]
 
     def damage(self, equivalent: Floats) -> Floats:
-        """The damage (C,) of each cycle, by its equivalent amplitude (C,), Pa."""
+        """Return the damage (C,) of each cycle from its equivalent amplitude (C,), Pa."""
         ratio, (above, below) = equivalent / self.knee[0], self.slopes
         low = np.minimum(ratio, 1.0) ** below if isfinite(below) else 0.0
         return np.asarray(np.where(ratio >= 1.0, ratio**above, low) / self.knee[1])
 
     def softer(self, equivalent: Floats) -> Floats:
-        """The damage (C,) if the slope above the knee went on to SOFTENED_KNEE_RATIO of it."""
+        """Return the damage (C,) if the slope above the knee continued down to SOFTENED_KNEE_RATIO
+        times its amplitude.
+        """
         ratio, damage = equivalent / self.knee[0], self.damage(equivalent)
         near = ratio ** self.slopes[0] / self.knee[1]
         return np.asarray(np.where((ratio >= SOFTENED_KNEE_RATIO) & (ratio < 1.0), near, damage))
@@ -62,11 +64,11 @@ class SnCurve:
 
     knee: amplitude S_D, Pa, and cycles N_D.
     slope: k above the knee.
-    slope_below: below it.
+    slope_below: k below the knee.
     scatter: T_N, 1 for none.
-    probability: of failure, for which the curve holds.
-    rule: of mean stress.
-    parameter: of the rule, M, R_m (Pa), or g.
+    probability: the failure probability of the curve.
+    rule: the mean stress correction.
+    parameter: M, R_m (Pa) or g, as the rule needs.
     """
 
     knee: tuple[float, float]
@@ -78,7 +80,10 @@ class SnCurve:
     parameter: float = 0.0
 
     def equivalent(self, amplitude: Floats, mean: Floats) -> Floats:
-        """Amplitudes (C,), Pa, at stress ratio -1, of cycles with amplitudes and means (C,), Pa."""
+        """Return the equivalent amplitudes (C,), Pa, at stress ratio -1.
+
+        amplitude, mean: (C,) of the cycles, Pa.
+        """
         top = np.maximum(amplitude + mean, 0.0)
         if self.rule == "fkm":
             from pylife.strength.meanstress import fkm_goodman
@@ -96,9 +101,9 @@ class SnCurve:
         return amplitude
 
     def cycles(self, amplitude: Floats, probability: float | None = None) -> Floats:
-        """Cycles to failure (C,), infinite below a knee without a slope.
+        """Return the cycles to failure (C,); infinite below a knee without a slope.
 
-        probability: of failure, by default that of the curve.
+        probability: failure probability, by default that of the curve.
         """
         import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
 
@@ -107,7 +112,7 @@ class SnCurve:
             return np.asarray(self._series().woehler.cycles(amplitude, wanted), dtype=float)
 
     def life(self, probability: float | None = None) -> Life:
-        """The curve at a failure probability, by default its own."""
+        """Return the curve at a failure probability, by default its own."""
         import pylife.materiallaws.woehlercurve  # noqa: F401, which teaches pandas
 
         wanted = self.probability if probability is None else probability
@@ -118,10 +123,10 @@ class SnCurve:
     def damage(
         self, equivalent: Floats, counts: Floats | float = 1.0, probability: float | None = None
     ) -> float:
-        """The damage of cycles with equivalent amplitudes (C,), Pa.
+        """Return the damage of cycles with equivalent amplitudes (C,), Pa.
 
-        counts: occurrences of each.
-        probability: of failure, by default that of the curve.
+        counts: occurrences of each amplitude.
+        probability: failure probability, by default that of the curve.
         """
         if not len(equivalent):
             return 0.0

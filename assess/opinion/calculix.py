@@ -17,17 +17,26 @@ from pinbase.arrays import Floats
 CALCULIX_COMMAND = "ccx"
 JOB_NAME = "job"
 INSTALL_HINT = "on Debian and Ubuntu: sudo apt-get install --no-install-recommends calculix-ccx"
-FRD_TO_VOIGT = [0, 1, 2, 4, 5, 3]  # xx, yy, zz, xy, yz, zx there; xx, yy, zz, yz, xz, xy here
+FRD_TO_VOIGT = [
+    0,
+    1,
+    2,
+    4,
+    5,
+    3,
+]  # from CalculiX's xx, yy, zz, xy, yz, zx to xx, yy, zz, yz, xz, xy
 
 
 class CalculixError(CodedError, RuntimeError):
-    """CalculiX failed; the message has the end of its output."""
+    """The error that CalculiX failed; the message has the relevant part of its output."""
 
 
 @dataclass(frozen=True)
 class CalculixSolution:
-    """Results of CalculiX: displacement (N, 3), m; stress (N, 6), Pa, extrapolated to the nodes and
-    averaged there: xx, yy, zz, yz, xz, xy.
+    """The results of CalculiX.
+
+    displacement: (N, 3) m. stress: (N, 6) Pa, extrapolated to the nodes and averaged there: xx, yy,
+    zz, yz, xz, xy.
     """
 
     displacement: Floats
@@ -35,14 +44,14 @@ class CalculixSolution:
 
 
 def installed() -> bool:
-    """Return whether CalculiX is installed."""
+    """Whether CalculiX is installed."""
     return shutil.which(CALCULIX_COMMAND) is not None
 
 
 def run(folder: Path) -> str:
-    """Run CalculiX on the deck JOB_NAME.inp in a folder; returns its output.
+    """Run CalculiX on the deck JOB_NAME.inp in a folder and return its output.
 
-    Raises: CalculixError when it cannot be run or fails.
+    Raises: CalculixError if it cannot be run or ends with an error status.
     """
     done = attempt(folder)
     if done.returncode:
@@ -55,7 +64,7 @@ def run(folder: Path) -> str:
 
 
 def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
-    """Run CalculiX as `run` does, on a job that may end without an answer.
+    """Run CalculiX as `run` does, on a job that may fail.
 
     Raises: CalculixError if it cannot run.
     """
@@ -76,9 +85,10 @@ def attempt(folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def solved(folder: Path, printed: str) -> CalculixSolution:
-    """The results of a run, given its output.
+    """Return the results of a run, given its printed output.
 
-    Raises: CalculixError when it failed: its own status is 0 after many of its errors.
+    Raises: CalculixError if the run failed. The exit status is not enough, because CalculiX ends
+    with status 0 after many of its errors.
     """
     seconds_of(printed)
     try:
@@ -95,9 +105,9 @@ def solved(folder: Path, printed: str) -> CalculixSolution:
 
 
 def seconds_of(printed: str) -> float:
-    """The run time that CalculiX reports, s.
+    """Return the run time that CalculiX reports, s.
 
-    Raises: CalculixError when it failed before.
+    Raises: CalculixError if the output reports an error or no run time.
     """
     time = re.search(r"Total CalculiX Time:\s*(\S+)", printed)
     if "*ERROR" in printed or time is None:
@@ -106,21 +116,25 @@ def seconds_of(printed: str) -> float:
 
 
 def end(printed: str) -> str:
-    """The output of a program from its first error on, or the end of it, on one line."""
+    """Return the output of a program on one line: 500 characters from its first error on, or its
+    last 500 characters.
+    """
     words = " ".join(printed.split())
     first = words.find("*ERROR")
     return words[first:][:500] if first >= 0 else words[-500:]
 
 
 def displacements(dat: Path) -> Floats:
-    """Displacements (N, 3) of all nodes from a .dat file, which has 7 digits (.frd has 6)."""
+    """Return the displacements (N, 3) of all nodes from a .dat file, which has 7 digits (a .frd
+    file has 6).
+    """
     lines = dat.read_text("ascii", "replace").splitlines()
     first = next(i for i, line in enumerate(lines) if "displacements" in line) + 2
     return np.loadtxt(lines[first:], usecols=(1, 2, 3), ndmin=2)
 
 
 def stresses(frd: Path) -> Floats:
-    """Stresses (N, 6) at all nodes from a .frd file."""
+    """Return the stresses (N, 6) at all nodes from a .frd file."""
     lines = frd.read_text("ascii", "replace").splitlines()
     first = next(i for i, line in enumerate(lines) if line.startswith(" -4  STRESS"))
     rows = []

@@ -1,16 +1,16 @@
-"""A second opinion on a pin: CalculiX solves what our solid model solves, and both are compared.
+"""A second opinion on a pin: CalculiX solves the same problem as our solid model, for comparison.
 
-Both get the same nodes, elements, material, supports and nodal forces, so that all that is left to
-differ is the program: assembly, solver and stress recovery, in which both extrapolate from the same
-four points of an element and average at the nodes. Displacements and stresses must agree to the
-digits that CalculiX prints; more than the limits below is no round-off.
+Both programs get the same nodes, elements, material, supports and nodal forces, so that only the
+programs differ: assembly, solver and stress recovery, in which both extrapolate from the same four
+points of an element and average at the nodes. Displacements and stresses must agree to the digits
+that CalculiX prints; differences beyond the limits in `opinions` are not round-off.
 
-What neither shares with the other is whether the mesh is fine enough. So the largest stress is also
+This comparison does not show whether the mesh is fine enough. The largest stress is therefore also
 compared with the answer of the chosen model, which comes from other meshes or another model.
 
-A pin without clamps is supported as in our own model: six displacement components, chosen well
-apart, are zero in both. Its loads are in balance, so these supports carry nothing and only choose
-which of all rigid motions is shown.
+A pin without clamps is supported as in our own model: six displacement components, well apart from
+each other, are zero in both programs. The loads are in balance, so these supports carry no force
+and only fix the rigid motion.
 """
 
 from __future__ import annotations
@@ -48,12 +48,14 @@ def second_opinions(
     distance: float,
     progress: Callable[[str], None] = lambda _: None,
 ) -> tuple[Opinion, ...]:
-    """Opinions on a pin's cases, each at the governing instant of its peak.
+    """Return the opinions on a pin's load cases, each at the governing instant of its peak.
 
-    They are computed on the first mesh of the solid model; an unconstrained pin has none.
+    They are computed on the first mesh of the solid model. Cases with the verdict "rigid" are left
+    out.
     distance: as in fea.solve.solve.Asked.
 
-    Raises: MeshError, SolveError from our own side; a failure of CalculiX is in the opinion.
+    Raises: MeshError, SolveError from our own model; a failure of CalculiX is stored in the
+    opinion.
     """
     instants = {p.case: p for p in peaks if p.verdict != "rigid"}
     live = tuple(case for case in cases if case.case in instants)
@@ -81,7 +83,8 @@ def first_solid_solution(
     cases: tuple[PinLoads, ...],
     distance: float,
 ) -> SolidSolution:
-    """The cases of a pin on the solid model's first mesh; arguments as `second_opinions`.
+    """Return the solution of a pin's cases on the first mesh of the solid model; arguments as
+    `second_opinions`.
 
     Raises: MeshError, SolveError.
     """
@@ -125,11 +128,11 @@ def _compared(
 
 
 def compared_nodes(solution: SolidSolution) -> Ints:
-    """The nodes at which maxima are compared.
+    """Return the numbers of the nodes at which maxima are compared.
 
-    For a body of revolution they are all nodes outside the excluded zones, also those inside the
-    body, where all models search and such a singularity ends; for any other body those of its
-    surface.
+    For a body of revolution these are all nodes outside the excluded zones, including nodes inside
+    the body, where all models search and where a singularity may end. For any other body they are
+    the surface nodes outside the zones.
     """
     fields = solution.fields
     if not fields.revolved:

@@ -1,4 +1,4 @@
-"""An input deck for CalculiX: quadratic tetrahedra, supports and nodal forces as we have them."""
+"""An input deck for CalculiX with the quadratic tetrahedra, supports and forces of our model."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import numpy as np
 from fea.core.material import Material
 from pinbase.arrays import Floats, Ints
 
-# C3D10 has the corners, then edges 01, 12, 02, 03, 13, 23, which is VTK's order and scikit-fem's
-# (not gmsh's: 03, 23, 13). A mirrored element is turned by exchanging its corners 1 and 2.
+# C3D10 has the corners, then the edges 01, 12, 02, 03, 13, 23. This is the order of VTK and of
+# scikit-fem, not of gmsh (03, 23, 13). Exchanging corners 1 and 2 corrects a mirrored element.
 MIRRORED_NODE_ORDER = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
 
 
 def c3d10(nodes: Floats, elements: Ints) -> Ints:
-    """Elements (M, 10) in the node order of C3D10 and with positive volume.
+    """Return elements (M, 10) in the node order of C3D10 and with positive volume.
 
     nodes: (N, 3), m. elements: node numbers: corners, then edges 01, 12, 02, 03, 13, 23.
     """
@@ -39,12 +39,11 @@ def write_deck(
 
 
 def mesh_lines(kind: str, nodes: Floats, elements: Ints, material: Material) -> Iterator[str]:
-    """The lines of a deck with the mesh and its material.
+    """Yield the lines of a deck with the mesh and its material.
 
+    kind: the element type, C3D10 or CAX6.
     nodes: (N, 3), m, in the set ALL.
-    elements: of a kind, C3D10 or CAX6.
-
-    CalculiX numbers nodes and elements from 1.
+    elements: node numbers, counted from 0; CalculiX counts nodes and elements from 1.
     """
     yield "*NODE, NSET=ALL"
     for number, (x, y, z) in enumerate(nodes, 1):
@@ -61,7 +60,7 @@ def mesh_lines(kind: str, nodes: Floats, elements: Ints, material: Material) -> 
 def deck_lines(
     nodes: Floats, elements: Ints, material: Material, fixed: Ints, forces: Floats
 ) -> Iterator[str]:
-    """The lines of such a deck; arguments as `write_deck`, in any consistent units."""
+    """Yield the lines of a deck; arguments as `write_deck`, in any consistent units."""
     yield from mesh_lines("C3D10", nodes, c3d10(nodes, elements), material)
     yield "*BOUNDARY"
     for node, axis in zip(*divmod(fixed, 3), strict=True):
@@ -79,9 +78,9 @@ def deck_lines(
 
 
 def real(x: float) -> str:
-    """A number as CalculiX can read it.
+    """Return a number as CalculiX can read it.
 
-    It cuts the exponent off a number of more than 20 characters, and then reports a "nonpositive
-    jacobian".
+    CalculiX cuts the exponent off a number of more than 20 characters, and then reports a
+    "nonpositive jacobian".
     """
     return f"{x:.11g}"

@@ -1,9 +1,9 @@
-"""A second opinion on a pin in its lugs: CalculiX's contact at the governing instant, on two
-meshes, compared with our load per length, largest bending moment, and stress at our maximum, of the
-surface or of a section.
+"""A second opinion on a pin in its lugs: CalculiX solves the contact at the governing instant on
+two meshes. The load per length, the largest bending moment, and the stress at our maximum (of the
+surface or of a section) are compared with ours.
 
-CalculiX has its own meshes, which cause most of the differences; the change from the coarser to the
-finer one shows how much they explain.
+CalculiX has its own meshes, which cause most of the differences. The change from the coarser to the
+finer mesh shows how much of the differences they explain.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ HALF_MODEL_MESHES = (
     Fineness(rings=6, sectors=24, layers=3, eye=2),
 )
 FULL_MODEL_MESHES = Fineness(rings=4, sectors=8, eye=1), Fineness(rings=6, sectors=16, eye=2)
-MAX_OMITTED_FORCE = 1e-3  # of the largest force: what CalculiX's model may lack
-MIN_BAND_FORCE = 1e-6  # of the largest force
-MOMENT_STATION_COUNT = 401
+MAX_OMITTED_FORCE = 1e-3  # relative to the largest force: loads that CalculiX's model may omit
+MIN_BAND_FORCE = 1e-6  # relative to the largest force of a band: smaller bands are not compared
+MOMENT_STATION_COUNT = 401  # stations at which the largest bending moment is sought
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class PinInLugs:
 
     @property
     def whole(self) -> Pin:
-        """The same pin with its bands in lugs of a structure."""
+        """The pin with bands also for the lugs of a structure."""
         return on_structure(self.pin, self.lugs)
 
 
@@ -61,8 +61,8 @@ def opinion_in_lugs(
     progress: Callable[[str], None] = lambda _: None,
     meshes: Meshes | None = None,
 ) -> Opinion:
-    """CalculiX's opinion on a case with a peak and its contact there, or the reason why there is
-    none.
+    """Return CalculiX's opinion on a load case with a peak and a joint solution, or an opinion with
+    the reason why the comparison failed.
     """
     answer = Opinion(peak.pin, peak.case, peak.max_von_mises, peak.own_error)
     try:
@@ -77,9 +77,11 @@ def opinion_in_lugs(
 
 
 def transverse(seated: PinInLugs, governing: PinLoads | None) -> PinLoads:
-    """The transverse forces and moments of the links, in balance with what a structure reacts.
+    """Return the transverse forces and moments of the links, in balance with the reactions of a
+    structure.
 
-    Raises: ArgumentError for what CalculiX's model lacks; SolveError for forces out of balance.
+    Raises: ArgumentError for loads or joints that CalculiX's model lacks; SolveError for unbalanced
+    forces.
     """
     _require_modelled(seated)
     assert governing is not None
@@ -115,8 +117,8 @@ def _require_modelled(seated: PinInLugs) -> None:
 
 
 def meshes_for(loads: PinLoads) -> Meshes:
-    """The coarser and the finer mesh, as fine as can be solved in minutes."""
-    # A moment lies in the plane of the forces that make it, a right angle from its vector.
+    """Return the coarser and the finer mesh, as fine as can be solved in minutes."""
+    # A moment acts in the plane of the forces that cause it, perpendicular to its vector.
     largest = np.abs(loads.forces).max(initial=0.0) / (np.abs(loads.moments).max() or 1.0)
     turning = largest * loads.moments[0][:, [1, 0]] * [1.0, -1.0]
     _, half = plane_of(np.concatenate([loads.forces[0, :, :2], turning]))
@@ -149,10 +151,10 @@ def _compared(
 
 
 def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
-    """CalculiX's stress at our maximum, Pa.
+    """Return CalculiX's stress for our maximum, Pa.
 
-    It is that on the surface if our maximum is there, else that of the section by the forces of
-    CalculiX's rings.
+    If our maximum is on the surface, this is CalculiX's stress at the same point; otherwise the
+    largest section stress by the forces of CalculiX's rings.
     """
     if peak.places is not None and peak.places.governs == "section":
         return section_of(opinion, seated.whole, seated.material).value
@@ -161,13 +163,13 @@ def _stress(opinion: JointOpinion, seated: PinInLugs, peak: Maximum) -> float:
 
 
 def largest_moment(opinion: JointOpinion, pin: Pin) -> float:
-    """The largest bending moment along the pin, N m."""
+    """Return the largest bending moment along the pin, N m."""
     z = np.linspace(0.0, pin.length, MOMENT_STATION_COUNT)
     return float(np.linalg.norm(opinion.bending_moment(z), axis=1).max())
 
 
 def _band(pin: Pin, ours: BandContact, theirs: JointOpinion) -> BandOpinion:
-    """The load per length of both programs, ours spread over CalculiX's rings."""
+    """Return the load per length of both programs, ours averaged over CalculiX's rings."""
     band = pin.band(ours.name)
     tiny = 1e-9 * pin.length
     within = (theirs.ends[:, 0] > band.z0 - tiny) & (theirs.ends[:, 1] < band.z1 + tiny)
@@ -180,6 +182,9 @@ def _band(pin: Pin, ours: BandContact, theirs: JointOpinion) -> BandOpinion:
 
 
 def _mean(ends: Floats, load: Floats, onto: Floats) -> Floats:
-    """Means over other parts (P,) of a load (R,) that is even between ends (R + 1,)."""
+    """Return the means of a piecewise constant load over other intervals, (P,).
+
+    ends: (R + 1,) ends of the pieces. load: (R,). onto: (P + 1,) ends of the other intervals.
+    """
     sums = np.concatenate([[0.0], np.cumsum(load * np.diff(ends))])
     return np.asarray(np.diff(np.interp(onto, ends, sums)) / np.diff(onto))

@@ -1,18 +1,19 @@
 """A second opinion on a pin in its lugs: CalculiX's contact in three dimensions.
 
-The geometry is that of fea.support.contact: the pin as it is, each lug an annulus as thick as its
-band is long, a bushing in it, with the clearance and the edges' rounding in the bore. Lugs are
-supported as there: the link's force is a traction of constant direction on the outer surface, whose
-mean tilt is guided or sprung. What differs: elements (C3D20R), contact (surface to surface, by a
-penalty), solver, stress recovery. Of forces that lie in a plane only one half is modelled. A lug
-begins where it touches the pin: shifted by half of its clearance along its force, which without
-friction changes nothing. Lugs of a structure hold still, so that they are shifted together, by half
-of the least of their clearances.
+The geometry is that of fea.support.contact: the pin as described, and each lug an annulus whose
+thickness is the length of its band, with its bushing, its clearance and the rounded edges of its
+bore. The supports of the lugs are also the same: the link's force is a traction of constant
+direction on the outer surface, whose mean tilt is guided or sprung. The differences are the
+elements (C3D20R), the contact (surface to surface, with a penalty), the solver and the stress
+recovery. If all forces lie in one plane, only one half is modelled. Each lug starts where it
+touches the pin: it is shifted by half its clearance along its force, which has no effect without
+friction. The lugs of a structure are fixed, so they are shifted together, by half the smallest of
+their clearances.
 
-CalculiX finds contact between the moved bodies, ours between those at rest. So forces and gaps are
-made small in one proportion (Fineness.scale) and results enlarged by it: this is the limit that
-fea.support.contact computes. At full loads a lug that tilts slides along the pin by more than an
-element.
+CalculiX finds contact between the deformed bodies, our model between the undeformed ones. Forces
+and gaps are therefore scaled down by the same factor (Fineness.scale), and the results scaled up:
+this is the limit that fea.support.contact computes. At full loads a tilting lug slides along the
+pin by more than an element.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ from geometry.mesh.hexahedra import fillets_of
 from geometry.shape.rings import graded
 
 DEFAULT_FINENESS = Fineness()
-MIN_FLAT_LENGTH = 1e-3  # of a band's length: a shorter flat part between rounded edges is none
-MAX_OUT_OF_PLANE_FORCE = 1e-6  # of the largest force: what may be across the plane of the others
+MIN_FLAT_LENGTH = 1e-3  # relative to the band: a shorter flat part between rounded edges is ignored
+MAX_OUT_OF_PLANE_FORCE = 1e-6  # out-of-plane force, relative to the largest force
 
 
 def joint_opinion(
@@ -54,9 +55,9 @@ def joint_opinion(
     loads: PinLoads,
     fineness: Fineness = DEFAULT_FINENESS,
 ) -> JointOpinion:
-    """CalculiX's opinion on a pin under transverse forces and moments of its links at one instant.
+    """Return CalculiX's opinion on a pin under transverse link forces and moments at one instant.
 
-    A lug whose connection has no loads is of a structure.
+    A lug whose connection has no loads is a lug of a structure.
 
     Raises: ArgumentError for loads or shapes that this model lacks; CalculixError.
     """
@@ -65,10 +66,10 @@ def joint_opinion(
 
 
 def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> JointOpinion:
-    """CalculiX's opinion from a deck.
+    """Return CalculiX's opinion from a deck.
 
-    angle: by which its axes are turned, rad.
-    scale: factor on its forces and gaps.
+    angle: angle by which the deck's axes are rotated about the pin's, rad.
+    scale: factor on the deck's forces and gaps.
 
     Raises: CalculixError.
     """
@@ -82,7 +83,7 @@ def deck_opinion(pin: Pin, deck: JointDeck, angle: float, scale: float) -> Joint
 def joint_deck(
     pin: Pin, material: Material, lugs: Sequence[Lug], loads: PinLoads, fineness: Fineness
 ) -> tuple[JointDeck, float]:
-    """The deck, and the angle, rad, by which its axes are turned about the pin's.
+    """Return the deck, and the angle, rad, by which its axes are rotated about the pin's.
 
     Arguments and errors as `joint_opinion`.
     """
@@ -110,8 +111,8 @@ def joint_deck(
 
 
 def _forces(loads: PinLoads, connections: Sequence[str]) -> tuple[Floats, Floats]:
-    """The transverse forces (B, 2), N, of the links, and their couples (B, 2), N m, as those of
-    forces along x and y.
+    """Return the transverse forces (B, 2), N, of the links, and their couples (B, 2), N m: those of
+    forces along x, and of forces along y.
 
     Raises: ArgumentError for more than one instant, or other loads.
     """
@@ -127,9 +128,10 @@ def _forces(loads: PinLoads, connections: Sequence[str]) -> tuple[Floats, Floats
 
 
 def plane_of(force: Floats) -> tuple[float, bool]:
-    """The direction, rad, of the largest of forces (B, 2), N, and whether all lie along it.
+    """Return the direction, rad, of the largest of forces (B, 2), N, and whether all forces are
+    parallel to it.
 
-    If they do, only half of the joint is modelled.
+    If they are, only half of the joint is modelled. If not, the direction is 0.
     """
     fx, fy = force[np.argmax(np.linalg.norm(force, axis=1))]
     across = np.abs(force @ [-fy, fx]).max() / np.hypot(fx, fy)
@@ -139,9 +141,9 @@ def plane_of(force: Floats) -> tuple[float, bool]:
 
 
 def stations_of(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> list[Floats]:
-    """The ends of the layers of elements in every segment, m.
+    """Return the ends of the element layers in every segment, m.
 
-    radii: of the bores' edges, m.
+    radii: edge radii of the bores by connection, m.
     """
     out = []
     for i, (start, end) in enumerate(pairwise(pin.stations)):
@@ -162,10 +164,11 @@ def stations_of(pin: Pin, radii: Mapping[str, float], fineness: Fineness) -> lis
 
 
 def _ring_ends(length: float, radius: float, count: int) -> Floats:
-    """The ends of the rings of a band, m: `count` on its flat part, and two in the rounding of each
-    edge.
+    """Return the ends of the rings of a band, m: `count` rings on its flat part, and two in the
+    rounding of each edge.
 
-    There are two since the parabola of one would press on the pin.
+    A single ring would not do, because the parabola of its quadratic elements would press on the
+    pin.
     """
     flat = length - 2.0 * radius
     inner = (
@@ -189,10 +192,10 @@ def _eye(
     half: bool,
     structure: tuple[float, Floats] | None,
 ) -> Eye:
-    """The support of a lug.
+    """Return a lug with its support.
 
-    structure: of one that holds still, clearance and force (2,), N, with which its structure
-    touches the pin.
+    structure: for a fixed lug, the clearance, m, and the force (2,), N, with which its structure
+    touches the pin; None for the lug of a link.
     """
     i, band = pin.labels.index(lug.connection), pin.band(lug.connection)
     radius, tiny = pin.segments[i].diameter / 2.0, 1e-9 * pin.length
@@ -221,7 +224,10 @@ def _direction(force: Floats) -> Floats:
 
 
 def _opened(mesh: Hexahedra, lug: Lug, shift: Floats, scale: float) -> Hexahedra:
-    """The mesh of a lug with clearance and rounding of the bore, times `scale`, shifted (2,), m."""
+    """Return the mesh of a lug with the clearance and edge rounding of its bore.
+
+    shift: (2,) displacement of the whole lug, m. scale: factor on clearance and rounding.
+    """
     x = mesh.nodes
     r = np.hypot(x[:, 0], x[:, 1])
     edge = np.minimum(x[:, 2] - x[:, 2].min(), x[:, 2].max() - x[:, 2])

@@ -1,4 +1,4 @@
-"""What CalculiX answers on a pin in its lugs, and how it is read."""
+"""CalculiX's results for a pin in its lugs, and how they are read."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from geometry import Pin
 from pinbase.arrays import Ints
 
 ZERO_INCREMENT_MESSAGE = "zero-size increment is appended"
-NEAREST_ELEMENTS = 12  # elements in which a point is looked for
+NEAREST_ELEMENTS = 12  # number of elements that are searched for a point
 
 
 @dataclass(frozen=True)
 class JointOpinion:
-    """CalculiX's answer, in the pin's axes, SI.
+    """CalculiX's results in the pin's axes, SI.
 
-    ends: (R, 2) m along z of the rings of all bands in their order.
-    force: (R, 2) N of the lugs on the pin at each ring.
-    first: (R, 2) N m, the forces' moments about z = 0: integrals of z times force.
-    nodes (N, 3) m, elements (M, 20) and stress (N, 6) Pa are those of the pin, or of its half, in
-    axes turned about the pin's by `angle`.
-    edges: (K, 2), r and z, m, of circles where stress is unbounded.
+    ends: (R, 2) ends along z of the rings of all bands in their order, m.
+    force: (R, 2) forces of the lugs on the pin at each ring, N.
+    first: (R, 2) moments of these forces about z = 0, the integrals of z times force, N m.
+    nodes, elements, stress: (N, 3) m, (M, 20) and (N, 6) Pa of the pin, or of its half, in axes
+    rotated about the pin's by `angle`, rad.
+    edges: (K, 2), r and z of circles where the stress is unbounded, m.
     unknowns, iterations, seconds: of the run.
-    appended: whether CalculiX found tension in the contact and added an increment of no load with
-    contact found anew, which is less accurate.
+    appended: whether CalculiX found tension in the contact and appended an increment of zero load
+    with a new contact search, which is less accurate.
     """
 
     ends: Floats
@@ -52,14 +52,14 @@ class JointOpinion:
 
     @property
     def line_load(self) -> Floats:
-        """The force per length of the lugs on the pin, mean over each ring, (R, 2) N/m."""
+        """The force per length of the lugs on the pin, averaged over each ring, (R, 2) N/m."""
         return self.force / np.diff(self.ends)
 
     def bending_moment(self, z: Floats) -> Floats:
-        """The bending moment of the part of the pin before z (Z,) m, (Z, 2) N m.
+        """Return the bending moment (Z, 2), N m, at z (Z,), m, of the part of the pin before z.
 
-        It is the integral of the shear along x and along y; exact at a ring's ends by its force and
-        moment, within it by an even load.
+        The moment is the integral of the shear along x and along y. It is exact at the ends of a
+        ring; within a ring the load is assumed even.
         """
         low, high = self.ends.T
         reach = np.clip(z[:, None] - low, 0.0, high - low)
@@ -69,9 +69,9 @@ class JointOpinion:
         return np.asarray(even + (z[:, None] >= high) @ off)
 
     def surface_at(self, point: Floats, nu: float) -> float:
-        """The von Mises stress, Pa, at a point (3,), m, of the surface.
+        """Return the von Mises stress, Pa, at a point (3,), m, of the surface.
 
-        It is without the stress of pressure on a ring (fea.harmonic.free_surface).
+        On a ring, the local stress of the pressure is removed (fea.harmonic.free_surface).
         """
         x = self._turned(point[None])[0]
         stress = self._stress_at(x)
@@ -81,11 +81,11 @@ class JointOpinion:
         return float(von_mises(stress))
 
     def von_mises_at(self, points: Floats) -> Floats:
-        """Von Mises stress (P,) Pa at points (P, 3) m of the pin."""
+        """Return the von Mises stress (P,), Pa, at points (P, 3), m, of the pin."""
         return von_mises(np.array([self._stress_at(x) for x in self._turned(points)]))
 
     def _turned(self, points: Floats) -> Floats:
-        """Points (P, 3) of the pin where the model has them."""
+        """Return points (P, 3) of the pin in the axes of the model, mirrored into its half."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         x = points @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
         if self.half:
@@ -93,14 +93,14 @@ class JointOpinion:
         return np.asarray(x)
 
     def largest(self, distance: float) -> float:
-        """Largest von Mises stress at a node, Pa, farther than a distance (m) from the edges."""
+        """Return the largest nodal von Mises stress, Pa, farther than a distance, m, from edges."""
         r, z = np.hypot(self.nodes[:, 0], self.nodes[:, 1]), self.nodes[:, 2]
         away = np.hypot(r[:, None] - self.edges[:, 0], z[:, None] - self.edges[:, 1])
         return float(von_mises(self.stress[(away > distance).all(axis=1)]).max())
 
     def _stress_at(self, point: Floats) -> Floats:
-        """The stress (6,), Pa, linear within the element that has the point, or comes nearest to
-        it.
+        """Return the stress (6,), Pa, at a point, interpolated linearly from the corners of the
+        element that contains the point or is nearest to it.
         """
         corners = self.nodes[self.elements[:, :8]]
         near = np.argsort(np.linalg.norm(corners.mean(axis=1) - point, axis=1))[:NEAREST_ELEMENTS]
@@ -114,7 +114,7 @@ class JointOpinion:
 def read_answer(
     pin: Pin, deck: JointDeck, angle: float, folder: Path, printed: str, scale: float
 ) -> JointOpinion:
-    """The results of a run.
+    """Return the results of a run; printed: its output. Other arguments as `deck_opinion`.
 
     Raises: CalculixError.
     """
@@ -164,7 +164,9 @@ def _ends(deck: JointDeck) -> Floats:
 
 
 def edges(pin: Pin) -> Floats:
-    """Circles (K, 2), r and z, m, of the lugs' edges and of the pin's shoulders, also inside."""
+    """Return circles (K, 2), r and z, m: the edges of the lugs, and the shoulders of the pin
+    outside and inside.
+    """
     out = []
     for band in (pin.band(name) for name in pin.connections):
         out += [(band.radius, band.z0), (band.radius, band.z1)]
@@ -178,8 +180,8 @@ def edges(pin: Pin) -> Floats:
 
 
 def contact_forces(dat: Path) -> dict[str, Floats]:
-    """The contact force (3), N, and moment (3), N m, about the origin on each slave surface, from a
-    .dat file.
+    """Return the contact force, N, and the moment about the origin, N m, on each slave surface,
+    (6,) each, from a .dat file.
     """
     text, out = dat.read_text("ascii", "replace"), {}
     for block in text.split("statistics for slave set ")[1:]:

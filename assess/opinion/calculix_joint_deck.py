@@ -1,9 +1,9 @@
 """An input deck for CalculiX: a pin and its lugs in frictionless contact, surface to surface.
 
-The pin is the slave, ring by ring, so that CalculiX prints the force on every ring; the bore of a
-lug is the master. A lug is supported as in fea.support.contact: on its outer surface a traction of
-constant direction, linear along z, which is what *EQUATION of the mean motion of that surface makes
-of a force or a spring on an auxiliary node.
+Each ring of the pin is a slave surface, so that CalculiX prints the force on every ring; the bore
+of a lug is the master. A lug is supported as in fea.support.contact: its outer surface carries a
+traction of constant direction that is linear along z. An *EQUATION between the mean motion of that
+surface and an auxiliary node turns a force or a spring on this node into such a traction.
 """
 
 from __future__ import annotations
@@ -27,18 +27,18 @@ Dialect = Literal["calculix", "abaqus"]
 
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
 FACE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-LAST_INCREMENT_ONLY = "FREQUENCY=1000000"  # of the increments, at which results are written
-# Of Young's modulus times the pin's length: springs that hold what has no contact
+LAST_INCREMENT_ONLY = "FREQUENCY=1000000"  # results are written for the last increment only
+# Stiffness of the springs that hold bodies without contact, over Young's modulus times pin length
 WEAK_SPRING_STIFFNESS = 1e-7
-STICK_STIFFNESS_RATIO = 0.1  # of the contact's stiffness: that against sliding
-FRICTION_INCREMENTS = "0.5, 1, 0.02, 0.5"  # of a step with friction: first, all, least, most
+STICK_STIFFNESS_RATIO = 0.1  # stiffness against sliding over the stiffness of the contact
+FRICTION_INCREMENTS = "0.5, 1, 0.02, 0.5"  # of a step with friction: first, total, min, max
 
 
 @dataclass(frozen=True)
 class Part:
     """A body of the deck: its name, mesh and material.
 
-    lining: the part with another material, up to a radius, m.
+    lining: outer radius, m, and material of the inner part, if that has another material.
     """
 
     name: str
@@ -48,8 +48,8 @@ class Part:
 
     @property
     def materials(self) -> Iterator[tuple[str, Material, Ints]]:
-        """The elements by material, by their numbers in this body: name in the deck, material,
-        elements.
+        """The name in the deck, the material, and the element numbers within this body, for each
+        material.
         """
         if self.lining is None:
             yield self.name, self.material, np.arange(len(self.mesh.elements))
@@ -62,13 +62,13 @@ class Part:
 
 @dataclass(frozen=True)
 class Eye:
-    """The support of a lug.
+    """A lug with its load and support.
 
-    force: (2,) N of its link on it.
-    tilt: N m/rad; inf, 0 as of fea.support.contact's Lug.
-    rings: the elements of the pin on each of its rings.
-    couple: (2,) N m of its link on it, which turns it along x and along y towards z.
-    held: whether it is of a structure, which holds still.
+    force: (2,) force of the link on the lug, N.
+    tilt: tilting stiffness, N m/rad; inf and 0 as in fea.support.lugs.lug: Lug.
+    rings: the elements of the pin on each of the lug's rings.
+    couple: (2,) couple of the link on the lug, N m, for tilts along x and along y towards z.
+    held: whether the lug belongs to a structure and is fixed.
     """
 
     part: Part
@@ -81,16 +81,18 @@ class Eye:
 
 @dataclass(frozen=True)
 class JointDeck:
-    """All bodies, in the pin's axes, or, when half of them lies in y > 0, in the loads' plane.
+    """The deck of a pin in its lugs.
 
+    The axes are those of the pin or, if only the half in y > 0 is modelled, those of the plane of
+    the loads.
     stiffness: of the contact, Pa/m.
     half: whether y = 0 is a plane of symmetry; forces and stiffnesses of lugs are then those of the
     half.
-    dialect: the program that reads it; Abaqus has no total force CF in *CONTACT PRINT, and takes
-    elements, not nodes, in *EL FILE.
-    friction: Coulomb's coefficient.
-    history: the fractions of the forces at the ends of the steps; with friction each of these takes
-    several increments.
+    dialect: the program that reads the deck; Abaqus has no total force CF in *CONTACT PRINT, and
+    takes elements, not nodes, in *EL FILE.
+    friction: Coulomb's friction coefficient.
+    history: the fractions of the forces at the ends of the load steps; with friction each step
+    takes several increments.
     """
 
     pin: Part
@@ -102,7 +104,7 @@ class JointDeck:
     history: tuple[float, ...] = (1.0,)
 
     def lines(self) -> Iterator[str]:
-        """The text of the deck."""
+        """Yield the lines of the deck."""
         first = self._first()
         for part, (node, element) in zip(self._parts, first, strict=True):
             yield from _body(part, node, element)
@@ -120,7 +122,7 @@ class JointDeck:
 
     @property
     def unknowns(self) -> int:
-        """Displacement components of all nodes."""
+        """The number of displacement components of all nodes."""
         return 3 * sum(len(part.mesh.nodes) for part in self._parts)
 
     @property
@@ -130,7 +132,9 @@ class JointDeck:
 
     @property
     def _fixed_eyes(self) -> set[int]:
-        """The eyes that do not shift: of a structure, else the first, which takes the balance."""
+        """The numbers of the lugs that cannot shift: those of a structure, else the first lug,
+        which reacts the imbalance.
+        """
         return {b for b, eye in enumerate(self.eyes) if eye.held} or {0}
 
     @property
@@ -138,9 +142,7 @@ class JointDeck:
         return (self.pin, *(eye.part for eye in self.eyes))
 
     def _first(self) -> list[tuple[int, int]]:
-        """The numbers of the first node and the first element of each part; last, those of what
-        follows.
-        """
+        """Return the numbers of the first node and the first element of each part."""
         out = [(1, 1)]
         for part in self._parts:
             node, element = out[-1]
@@ -171,7 +173,7 @@ class JointDeck:
                 yield f"{slave(eye.part.name, k)}, BORE{eye.part.name}"
 
     def _auxiliary(self, b: int) -> tuple[int, int]:
-        """The nodes whose displacements are the mean shift of a lug and its tilt, rad."""
+        """Return the nodes whose displacements are the mean shift of lug b and its tilt, rad."""
         return self._nodes + 1 + 2 * b, self._nodes + 2 + 2 * b
 
     def _holding(self, first: list[tuple[int, int]]) -> Iterator[str]:
@@ -206,8 +208,8 @@ class JointDeck:
             yield f"{stiffness:.10e}"  # without a point it would be read as another axis
 
     def _fixed(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """The fixed components: shifts of a structure's lugs or of the first, guided lugs' tilts,
-        and those of the plane of symmetry.
+        """Yield the fixed components: the shifts of `_fixed_eyes`, the tilts of guided lugs, and
+        the normal displacements on the plane of symmetry.
         """
         for b, eye in enumerate(self.eyes):
             shift, tilt = self._auxiliary(b)
@@ -224,10 +226,10 @@ class JointDeck:
                 yield from (f"{start + n}, 2" for n in flat)
 
     def _axial(self, first: list[tuple[int, int]]) -> Iterator[str]:
-        """The constraints by which no body moves along its axis or turns about it.
+        """Yield the constraints that prevent axial motion and rotation about the axis of each body.
 
-        Each holds two opposite nodes, so that a tilt does not shift the body, which would move the
-        edges of its contact.
+        Each constrains two opposite nodes, so that a tilt does not shift the body; a shift would
+        move the edges of its contact.
         """
         for part, (start, _) in zip(self._parts, first, strict=True):
             one, other = _opposite(part.mesh)
@@ -261,7 +263,7 @@ class JointDeck:
 
 
 def slave(lug: str, ring: int) -> str:
-    """The name of the surface of a ring of the pin."""
+    """Return the name of the slave surface of a ring of the pin."""
     return f"PIN{lug}R{ring + 1}"
 
 
@@ -289,24 +291,25 @@ def _surface(name: str, elements: Ints, face: int) -> Iterator[str]:
 
 
 def _ends(mesh: Hexahedra) -> tuple[int, int]:
-    """The nodes of the pin at both ends, in the plane of symmetry."""
+    """Return one node at each end of the pin, in the plane of symmetry."""
     x = mesh.nodes
     order = 1e-6 * np.abs(x[:, 1]) - 1e-7 * x[:, 0]
     return int(np.argmin(x[:, 2] + order)), int(np.argmin(order - x[:, 2]))
 
 
 def _opposite(mesh: Hexahedra) -> tuple[int, int]:
-    """The nodes inside the wall, at half its length, on both sides of the axis along x."""
+    """Return two nodes inside the wall at half the length, on opposite sides of the axis in x."""
     z, wall = mesh.nodes[:, 2], mesh.outer[mesh.outer > 0.0]
-    middle = 0.5 * (z.min() + z.max()) + 1e-4 * np.ptp(z)  # between two nodes not their mean
+    # The small offset avoids a tie between two nodes.
+    middle = 0.5 * (z.min() + z.max()) + 1e-4 * np.ptp(z)
     r = 0.5 * (mesh.inner[mesh.outer > 0.0].min() + wall.max())
     near = [np.linalg.norm(mesh.nodes - [x, 0.0, middle], axis=1).argmin() for x in (r, -r)]
     return int(near[0]), int(near[1])
 
 
 def _equations(mesh: Hexahedra, first: int, axis: int, shift: int, tilt: int) -> Iterator[str]:
-    """The equations by which the auxiliary nodes' displacements along an axis are the mean of those
-    of the outer surface, and their mean slope along z.
+    """Yield the equations that set the displacements of the auxiliary nodes along an axis to the
+    mean displacement of the outer surface (shift) and to its mean slope along z (tilt).
     """
     nodes, weight = surface_weights(mesh)
     rows = weight / weight[:, 0].sum(), weight
@@ -333,8 +336,8 @@ def _equations(mesh: Hexahedra, first: int, axis: int, shift: int, tilt: int) ->
 
 
 def surface_weights(mesh: Hexahedra) -> tuple[Ints, Floats]:
-    """Nodes (K,) of the outer surface, and the integrals of their shape functions, and of these
-    times z, (K, 2) m^2, m^3.
+    """Return the nodes (K,) of the outer surface, and the integrals (K, 2) of their shape
+    functions, m^2, and of their shape functions times z, m^3.
     """
     faces = mesh.face(np.flatnonzero(mesh.outer == mesh.outer.max()), OUTER_FACE)
     nodes, number = np.unique(faces, return_inverse=True)
@@ -352,7 +355,7 @@ def surface_weights(mesh: Hexahedra) -> tuple[Ints, Floats]:
 
 
 def _serendipity(s: float, t: float) -> tuple[Floats, Floats]:
-    """Shape functions (8,) of a quadrilateral with middles, and their slopes (8, 2)."""
+    """Return the shape functions (8,) of an eight-node quadrilateral, and their slopes (8, 2)."""
     a, b = FACE_CORNERS.T
     p, q = 1.0 + a * s, 1.0 + b * t
     corner = 0.25 * p * q * (a * s + b * t - 1.0)

@@ -1,7 +1,8 @@
-"""Structured meshes of hexahedra with 20 nodes: stepped pins, hollow or solid, and annuli.
+"""Structured meshes of 20-node hexahedra: stepped pins, hollow or solid, and annuli.
 
-A cross-section of cells is drawn along z: circles at all radii of the outline, cut into equal
-sectors, round a core of squares where the pin is solid. Cells outside of the outline are left out.
+A cross-section of cells is extruded along z. Its cells are circles at all radii of the outline, cut
+into equal sectors, around a core of squares if the pin is solid. Cells outside the outline are left
+out.
 """
 
 from __future__ import annotations
@@ -20,22 +21,23 @@ from geometry.mesh.hexahedra import Fillet, filleted, fillets_of
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Pairs of corners of the nodes 9 to 20 of C3D20, and the corners of its faces 4 and 6, counted
-# from 0, which are the outer and the inner one of a cell drawn from a ring.
+# The corner pairs of the midside nodes 9 to 20 of C3D20, and the nodes of its faces 4 and 6; all
+# counted from 0. These are the outer and the inner face of a cell extruded from a ring.
 C3D20_EDGES = np.array(
     [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
 )
 OUTER_FACE, INNER_FACE = 4, 6
 FACE_NODES = {OUTER_FACE: [1, 5, 6, 2, 17, 13, 18, 9], INNER_FACE: [3, 7, 4, 0, 19, 15, 16, 11]}
-# Of the contact, times Young's modulus over the diameter. Halved or doubled it changes the moment
-# and the stress of a clevis by 0.1 to 0.2 %, of two lugs with clearance by up to 0.6 %.
+# Stiffness of the contact, times Young's modulus over the diameter. Half or twice this value
+# changes the moment and the stress of a clevis by 0.1 to 0.2 %, those of two lugs with clearance by
+# up to 0.6 %.
 CONTACT_STIFFNESS = 200.0
-# So that displacements are small compared with elements: contact is found on moved nodes
+# Keeps displacements small compared with elements, because contact is found on displaced nodes
 SMALL_LOAD_SCALE = 0.01
-CORE_SIZE = 0.55  # of the least radius of a solid pin: half the side of the core, about
-CORE_ROUNDNESS = 0.4  # how round the core is: 0 a square, 1 a circle
+CORE_SIZE = 0.55  # approximate half side of the core over the smallest radius of a solid pin
+CORE_ROUNDNESS = 0.4  # shape of the core: 0 is a square, 1 is a circle
 MAX_LOCATING_STEPS, LOCATING_TOLERANCE = 12, 1e-9  # of Newton's method for a point in an element
-# Of the layers behind a fillet, whose depths grow as this power of their number.
+# The depths of the layers behind a fillet grow with this power of their number.
 FILLET_GRADING = 1.5
 CORNER_SIGNS = np.array(
     [[x, y, z] for z in (-1.0, 1.0) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
@@ -46,15 +48,15 @@ CORNER_SIGNS = np.array(
 class Fineness:
     """The fineness of CalculiX's meshes, and the constants of its contact.
 
-    rings: of a band between its rounded edges.
+    rings: number of rings of a band between its rounded edges.
     parts: elements along each ring.
-    sectors: over the whole circumference, a multiple of 8.
-    layers: elements through the pin's wall, or from the core of a solid one to its surface.
+    sectors: number over the whole circumference, a multiple of 8.
+    layers: elements through the wall of the pin, or from the core of a solid pin to its surface.
     eye: elements through the wall of a lug, in addition to one in a bushing.
-    arc: elements of half of a fillet's arc, and behind it to the depth of its radius.
-    along: elements of a segment without a lug, for every length of a diameter; at least two.
+    arc: elements over half of a fillet's arc, and layers behind it down to the depth of the fillet.
+    along: elements of a segment without a lug per diameter of length; at least two in total.
     stiffness: of the contact, times Young's modulus of the pin over its smallest diameter.
-    scale: of forces and gaps; results are the same multiple where displacements are small.
+    scale: factor on forces and gaps; results scale by the same factor if displacements are small.
     """
 
     rings: int = 8
@@ -69,14 +71,16 @@ class Fineness:
 
     @property
     def arc_places(self) -> Floats:
-        """Distances (arc + 1,) from the corner below a fillet, over its radius, of nodes that are
-        moved onto its arc at equal angles.
+        """The distances (arc + 1,) from the corner below a fillet, relative to its radius, of the
+        nodes that are moved onto its arc at equal angles.
         """
         return np.asarray(math.sqrt(2.0) * np.sin(np.linspace(0.0, math.pi / 4.0, self.arc + 1)))
 
     @property
     def arc_depths(self) -> Floats:
-        """Depths (arc + 1,) of the layers behind a fillet, over that to which nodes are moved."""
+        """The depths (arc + 1,) of the layers behind a fillet, relative to the depth down to which
+        nodes are moved.
+        """
         return np.asarray(np.linspace(0.0, 1.0, self.arc + 1) ** FILLET_GRADING)
 
     def __post_init__(self) -> None:
@@ -86,12 +90,12 @@ class Fineness:
 
 @dataclass(frozen=True)
 class Hexahedra:
-    """A mesh of hexahedra with 20 nodes.
+    """A mesh of 20-node hexahedra.
 
     nodes: (N, 3) m.
     elements: (M, 20), in the order of C3D20.
-    layer: (M,), number along z.
-    inner, outer: (M,), radii of the element where it is a ring's, m; 0 in the core.
+    layer: (M,), number of the layer along z.
+    inner, outer: (M,), radii between which a ring element lies, m; 0 in the core.
     """
 
     nodes: Floats
@@ -101,7 +105,7 @@ class Hexahedra:
     outer: Floats
 
     def face(self, elements: Ints, face: int) -> Ints:
-        """The nodes (K, 8) of a face of elements: corners, then the middles of its edges."""
+        """Return the nodes (K, 8) of a face of elements: corners, then midside nodes."""
         return self.elements[elements][:, FACE_NODES[face]]
 
 
@@ -110,9 +114,9 @@ class _Section:
     """The cells of a cross-section.
 
     points: (P, 2) m.
-    cells: (Q, 4), anticlockwise, rings from their inner edge on.
-    on: radius of the circle of a point, 0 in the core.
-    inner, outer: radii of the cells' circles.
+    cells: (Q, 4), anticlockwise; those of rings start at their inner edge.
+    on: (P,) radius of the circle on which a point lies, 0 in the core.
+    inner, outer: (Q,) radii between which a cell lies, 0 in the core.
     """
 
     points: Floats
@@ -123,12 +127,13 @@ class _Section:
 
 
 def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> Hexahedra:
-    """The mesh of a pin.
+    """Return the mesh of a pin.
 
     z: ends of the layers of each segment, m.
-    half: only y > 0.
+    half: whether only y > 0 is meshed.
 
-    Raises: ArgumentError for a pin with cones, rounded edges, or a fillet before a thin wall.
+    Raises: ArgumentError for a pin with cones, rounded edges, or a fillet larger than the wall
+    behind it.
     """
     if not pin.stepped:
         raise ArgumentError(f"CalculiX's model has only cylinders (pin {pin.name})", "cone")
@@ -153,9 +158,9 @@ def pin_mesh(pin: Pin, z: Sequence[Floats], fineness: Fineness, half: bool) -> H
 
 
 def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: bool) -> Hexahedra:
-    """The mesh of a lug of layers with ends z, m.
+    """Return the mesh of a lug whose layers end at z, m.
 
-    radii: of its bore, of a bushing's outside if it has one, and its own, m.
+    radii: of the bore, of the outside of a bushing if there is one, and of the lug's outside, m.
     """
     wall = (radii[-1] / radii[-2]) ** np.linspace(0.0, 1.0, fineness.eye + 1)
     section = _section(np.array([*radii[:-2], *radii[-2] * wall]), False, fineness.sectors, half)
@@ -164,8 +169,8 @@ def annulus_mesh(radii: tuple[float, ...], z: Floats, fineness: Fineness, half: 
 
 
 def _radii(steps: list[float], solid: bool, layers: int) -> Floats:
-    """The radii of all circles: those of the outline, and between them, finer towards the larger
-    one.
+    """Return the radii of all circles: those of the outline, and intermediate ones that are closer
+    together towards the larger radius.
     """
     first = CORE_SIZE * steps[0] if solid else steps[0]
     whole = [first, *steps] if solid else steps
@@ -179,8 +184,8 @@ def _radii(steps: list[float], solid: bool, layers: int) -> Floats:
 
 
 def _refined(radii: Floats, fillets: list[Fillet], fineness: Fineness) -> Floats:
-    """The radii with those of the layers behind fillets and of the ends of elements on their
-    arcs.
+    """Return the radii with added circles for the layers behind fillets and for the elements on
+    their arcs.
     """
     out = radii
     for fillet in fillets:
@@ -191,7 +196,7 @@ def _refined(radii: Floats, fillets: list[Fillet], fineness: Fineness) -> Floats
 
 
 def layers_at_fillets(z: Floats, fillets: Sequence[Fillet], fineness: Fineness) -> Floats:
-    """The ends of the layers of a segment, m, with those of a fillet at either end."""
+    """Return the ends of the layers of a segment, m, with those of fillets at its ends added."""
     for fillet in fillets:
         depths, places = fillet.depth * fineness.arc_depths, fillet.radius * fineness.arc_places
         z = with_added(z, fillet.z + fillet.direction * places, (places[-1] - places[-2]) / 2.0)
@@ -200,8 +205,10 @@ def layers_at_fillets(z: Floats, fillets: Sequence[Fillet], fineness: Fineness) 
 
 
 def with_added(positions: Floats, added: Floats, nearest: float) -> Floats:
-    """The sorted positions, with those added that lie between them and are not nearer to one than
-    a distance.
+    """Return sorted positions with added ones.
+
+    Only added positions count that lie within the range of the positions and are farther than
+    `nearest` from each of them.
     """
     between = added[(added > positions[0]) & (added < positions[-1])]
     apart = np.abs(between[:, None] - positions).min(axis=1, initial=np.inf)
@@ -246,7 +253,9 @@ def _upper(section: _Section) -> _Section:
 
 
 def _core(sectors: int, radius: float) -> tuple[Floats, Ints]:
-    """The points of a square whose sides bulge, and their numbers (n + 1, n + 1) along x and y."""
+    """Return the points of a square with bulging sides, and their numbers (n + 1, n + 1) along x
+    and y.
+    """
     n = sectors // 4
     u, v = np.meshgrid(*2 * [np.linspace(-1.0, 1.0, n + 1)], indexing="ij")
     s = np.maximum(np.abs(u), np.abs(v))
@@ -262,16 +271,18 @@ def _core(sectors: int, radius: float) -> tuple[Floats, Ints]:
 
 
 def _edge(numbers: Ints) -> Ints:
-    """The numbers along the square's edge, anticlockwise from the middle of its side at x > 0."""
+    """Return the point numbers along the edge of the square, anticlockwise from the middle of its
+    side at x > 0.
+    """
     n = len(numbers) - 1
     loop = np.concatenate([numbers[n, :-1], numbers[:0:-1, n], numbers[0, :0:-1], numbers[:-1, 0]])
     return np.roll(loop, -(n // 2))
 
 
 def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahedra:
-    """The mesh of the cells drawn along z, (L + 1,) m.
+    """Return the mesh of the cells extruded along z, (L + 1,) m.
 
-    bore, outer: radii between which cells exist, (L,) m, of each layer.
+    bore, outer: (L,) radii between which each layer has cells, m.
     """
     tiny = 1e-9 * outer.max()
     count, elements, layer, inner, out = len(section.points), [], [], [], []
@@ -291,9 +302,10 @@ def _drawn(section: _Section, z: Floats, bore: Floats, outer: Floats) -> Hexahed
 
 
 def _quadratic(corners: Floats, elements: Ints, on: Floats) -> tuple[Floats, Ints]:
-    """The mesh with nodes in the middles of edges, without unused nodes.
+    """Return the nodes and elements with midside nodes, without unused nodes.
 
-    A middle lies on the circle if both ends of the edge do.
+    on: radius of the circle of each corner. A midside node lies on the circle if both ends of its
+    edge do.
     """
     edges = np.sort(elements[:, C3D20_EDGES], axis=2).reshape(-1, 2)
     pairs, number = np.unique(edges, axis=0, return_inverse=True)
@@ -307,7 +319,7 @@ def _quadratic(corners: Floats, elements: Ints, on: Floats) -> tuple[Floats, Int
 
 
 def trilinear(natural: Floats) -> tuple[Floats, Floats]:
-    """Shape functions (8,) of a hexahedron's corners, and their slopes (8, 3)."""
+    """Return the trilinear shape functions (8,) of a hexahedron, and their slopes (8, 3)."""
     parts = 1.0 + CORNER_SIGNS * natural
     shape = parts.prod(axis=1) / 8.0
     others = np.stack([parts[:, [1, 2]], parts[:, [0, 2]], parts[:, [0, 1]]], axis=1).prod(axis=2)
@@ -315,7 +327,9 @@ def trilinear(natural: Floats) -> tuple[Floats, Floats]:
 
 
 def natural_coordinates(corners: Floats, point: Floats) -> Floats:
-    """Natural coordinates (3,) of a point in a hexahedron, by Newton's method."""
+    """Return the natural coordinates (3,) of a point in a hexahedron, by Newton's method; they are
+    clipped at -2 and 2.
+    """
     x = np.zeros(3)
     for _ in range(MAX_LOCATING_STEPS):
         shape, slopes = trilinear(x)

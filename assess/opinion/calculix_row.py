@@ -1,4 +1,4 @@
-"""CalculiX's own surface and sections of a pin in its lugs, from its own fields and forces."""
+"""The surface and the sections of a pin in its lugs by CalculiX's own fields and forces."""
 
 from __future__ import annotations
 
@@ -12,21 +12,23 @@ from geometry import Pin
 from geometry.shape.rings import ring, ringed
 from pinbase.arrays import Floats, Ints, Mask
 
-MIN_PRESSURE_SHARE = 0.02  # of the largest pressure
+MIN_PRESSURE_SHARE = 0.02  # relative to the largest pressure: a smaller one is no contact
 HEXAHEDRON_FACES = np.array(
     [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
 )
-RELATIVE_LENGTH_TOLERANCE = 1e-9  # of lengths
+RELATIVE_LENGTH_TOLERANCE = 1e-9
 
 
 def section_of(opinion: JointOpinion, pin: Pin, material: Material) -> AtSection:
-    """The largest stress of the pin's sections, by the forces of CalculiX's rings."""
+    """Return the largest stress of the pin's sections by the forces of CalculiX's rings."""
     loads = ring_loads(opinion, pin)
     return SectionField(on_rings(opinion, pin), material, (), [loads]).place(loads)
 
 
 def free(opinion: JointOpinion) -> Mask:
-    """A mask (N,) of the corner nodes on the pin's surface whose elements have no pressed node."""
+    """Return a mask (N,) of the corner nodes on the pin's surface that belong to no element with a
+    pressed node.
+    """
     x, corners = opinion.nodes, opinion.elements[:, :8]
     faces = corners[:, HEXAHEDRON_FACES].reshape(-1, 4)
     unique_faces, count = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
@@ -41,8 +43,8 @@ def free(opinion: JointOpinion) -> Mask:
 
 
 def pressed(opinion: JointOpinion) -> Mask:
-    """A mask (N,) of the pressed nodes: those on a ring where s_rr is MIN_PRESSURE_SHARE of the
-    largest there.
+    """Return a mask (N,) of the pressed nodes: nodes on a ring whose pressure -s_rr exceeds
+    MIN_PRESSURE_SHARE of the largest pressure on any ring.
     """
     x = opinion.nodes
     r, z = np.hypot(x[:, 0], x[:, 1]), x[:, 2]
@@ -62,12 +64,14 @@ def pressed(opinion: JointOpinion) -> Mask:
 
 
 def on_rings(opinion: JointOpinion, pin: Pin) -> Pin:
-    """The pin with its bands cut into CalculiX's rings."""
+    """Return the pin with its bands cut into CalculiX's rings."""
     return ringed(pin, {name: ends for name, _, ends in _by_band(opinion, pin)})
 
 
 def ring_loads(opinion: JointOpinion, pin: Pin) -> PinLoads:
-    """The forces of the lugs on the rings, and their couples about the middles of these."""
+    """Return the forces of the lugs on the rings, and their couples about the middles of the
+    rings.
+    """
     names = [
         ring(name, k)
         for name, band_rows, _ in _by_band(opinion, pin)
@@ -81,8 +85,8 @@ def ring_loads(opinion: JointOpinion, pin: Pin) -> PinLoads:
 
 
 def _by_band(opinion: JointOpinion, pin: Pin) -> list[tuple[str, Ints, Floats]]:
-    """The name of each band, the rows of its rings in the order of z, and their ends along it,
-    m.
+    """Return for each band its name, the rows of its rings in the order of z, and the ends of the
+    rings along the band, m.
     """
     out, tiny = [], RELATIVE_LENGTH_TOLERANCE * pin.length
     for name in pin.connections:

@@ -1,9 +1,10 @@
-"""A cantilever pin's axial stress from the harmonic model, compared with beam theory.
+"""The axial stress of a cantilever pin from the harmonic model, compared with beam theory.
 
-Along the surface line in tension, with the load on the band's surface, and with the same load on a
-thin bore along the axis, which imitates the line load of the theory.
+The stress is compared along the surface line in tension: with the load on the band's surface, and
+with the same load on a thin bore along the axis, which imitates the line load of the theory.
 
-The theory is a stepped beam clamped at z = 0, which is statically determinate: no material enters.
+The theory is a stepped beam clamped at z = 0. It is statically determinate, so the material has no
+effect.
 The stress at the surface is M r / I. Source: any text on the mechanics of materials.
 
 Michell's constant term in the axial stress of a round bar under a uniform transverse load:
@@ -59,8 +60,8 @@ _UNIT_MATERIAL = Material("any", 1.0, 0.0)
 
 @dataclass(frozen=True)
 class BeamForces:
-    """Results of a beam along z, m: shear, N, moment, N m, and axial stress, Pa, on the side in
-    tension.
+    """The results of a beam along z, m: shear, N, moment, N m, and axial stress on the tension
+    side, Pa.
     """
 
     z: Floats
@@ -70,7 +71,10 @@ class BeamForces:
 
 
 def cantilever(pin: Pin, forces: dict[str, float], z: Floats) -> BeamForces:
-    """The beam at z (Z,) in m; transverse forces (N) in one plane by band, each uniform over it."""
+    """Return the results of a beam clamped at its start.
+
+    forces: transverse forces, N, in one plane, by band; each is uniform over its band. z: (Z,) m.
+    """
     units = tuple(UnitLoad(name, "force", 1) for name in forces)
     beam = stepped_beam(pin, _UNIT_MATERIAL, units, ("start",))
     inside = beam.at(z) @ np.array(list(forces.values()))
@@ -83,9 +87,9 @@ def cantilever(pin: Pin, forces: dict[str, float], z: Floats) -> BeamForces:
 def beam_check(
     pin: Pin, material: Material, loads: PinLoads, bore: float, points: int = 101
 ) -> BeamCheck:
-    """Compare with beam theory a pin clamped at its start under transverse forces on one band.
+    """Compare a pin, clamped at its start under transverse forces on one band, with beam theory.
 
-    The comparison is at the instant of the largest force.
+    The comparison is made at the instant of the largest force.
     bore: diameter, m, of the thin bore on which the load also acts.
 
     Raises: MeshError, SolveError.
@@ -118,9 +122,10 @@ def beam_check(
 
 
 def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats) -> Floats:
-    """The axial stress (Z,), Pa, at z, m, on the side in tension of a shaft clamped at its start.
+    """Return the axial stress (Z,), Pa, at z, m, on the tension side of a shaft clamped at its
+    start.
 
-    The load is one newton across on the surface `loaded`.
+    The load is a transverse force of 1 N on the surface `loaded`.
     radius: of the shaft, m.
 
     Raises: MeshError, SolveError.
@@ -137,7 +142,8 @@ def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats)
 
 
 def surface_load_term(nu: float) -> float:
-    """Michell's k (no unit) at Poisson's ratio `nu`, load (a): uniform traction on the surface.
+    """Return Michell's k (dimensionless) at Poisson's ratio `nu` for load (a): a uniform traction
+    on the surface.
 
     Source: as the module.
     """
@@ -145,7 +151,8 @@ def surface_load_term(nu: float) -> float:
 
 
 def axis_load_term(nu: float) -> float:
-    """Michell's k (no unit) at Poisson's ratio `nu`, load (b): a line load on the axis.
+    """Return Michell's k (dimensionless) at Poisson's ratio `nu` for load (b): a line load on the
+    axis.
 
     Source: as the module.
     """
@@ -153,7 +160,7 @@ def axis_load_term(nu: float) -> float:
 
 
 def constant_stress(k: float, load: float, radius: float) -> float:
-    """The amount, Pa, by which the axial stress in tension is below the beam's.
+    """Return the amount, Pa, by which the axial stress in tension is below the beam's.
 
     k: Michell's term.
     load: N/m.

@@ -1,4 +1,4 @@
-"""CalculiX's results for a pin in one case, compared with our own."""
+"""CalculiX's results for a pin in one load case, compared with our own."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from dataclasses import dataclass
 from fea.support.records import Couple, LineLoad
 from pinbase.dimensions import Length, Stress
 
-MAX_DISPLACEMENT_DIFFERENCE = 1e-5  # of the largest; CalculiX prints 7 digits
-MAX_STRESS_DIFFERENCE = 1e-4  # of the largest; CalculiX prints 6 digits of each component
-# Allowed deviation from the answer, in addition to its error, of the solid model's first mesh at a
-# fillet or where a singularity ends (22 % at most in studies/grenier2008.toml). It finds mistakes
-# only.
+MAX_DISPLACEMENT_DIFFERENCE = 1e-5  # relative to the largest; CalculiX prints 7 digits
+MAX_STRESS_DIFFERENCE = 1e-4  # relative to the largest; CalculiX prints 6 digits of each component
+# Allowed deviation from the run's answer, in addition to its error. The first mesh of the solid
+# model deviates at a fillet or where a singularity ends (at most 22 % in studies/grenier2008.toml),
+# so this limit only detects gross mistakes.
 MAX_MAXIMUM_DIFFERENCE = 0.30
-# For contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments differ
-# by 3.5 % and loads by 6 % at most.
+# Limits for contact with lugs, on meshes that CalculiX solves in minutes: on random joints moments
+# differ by at most 3.5 % and loads by at most 6 %.
 MAX_MOMENT_DIFFERENCE, MAX_LOAD_DIFFERENCE = 0.05, 0.10
 
 
 @dataclass(frozen=True)
 class BandOpinion:
-    """The load per length along a band in the direction of its link's force, ours and CalculiX's.
+    """The load per length along a band, in the direction of its total force, ours and CalculiX's.
 
-    It is the mean over each part between `ends`, one more than there are parts.
+    ends: the ends of the parts of the band. ours, theirs: the mean load per length over each part.
     """
 
     name: str
@@ -33,7 +33,7 @@ class BandOpinion:
 
     @property
     def elsewhere(self) -> float:
-        """The part of the load that the programs place in different parts of the band."""
+        """The fraction of the load that the two programs place in different parts of the band."""
         lengths = [b - a for a, b in zip(self.ends, self.ends[1:], strict=False)]
         rows = list(zip(self.ours, self.theirs, lengths, strict=True))
         whole = sum(abs(theirs) * length for _, theirs, length in rows)
@@ -42,13 +42,14 @@ class BandOpinion:
 
 @dataclass(frozen=True)
 class ContactOpinion:
-    """The contact with lugs.
+    """The comparison of the contact with lugs.
 
-    moment: the largest bending moment.
-    bands: those that carry load.
+    our_moment, moment: the largest bending moment, ours and CalculiX's.
+    bands: the loaded bands.
     coarser: unknowns of CalculiX's coarser mesh.
-    moment_change, stress_change: relative change of its results from that to the finer mesh.
-    tension: whether it found tension in the contact, and repeated it.
+    moment_change, stress_change: relative change of CalculiX's results from the coarser to the
+    finer mesh.
+    tension: whether CalculiX found tension in the contact and repeated the contact search.
     """
 
     bands: tuple[BandOpinion, ...]
@@ -61,27 +62,28 @@ class ContactOpinion:
 
     @property
     def moment_difference(self) -> float:
-        """CalculiX's largest bending moment over ours, less 1."""
+        """The relative difference of CalculiX's largest bending moment from ours."""
         return self.moment / self.our_moment - 1.0
 
     @property
     def elsewhere(self) -> float:
-        """The largest part of a band's load that the programs place in different parts of it."""
+        """The largest `elsewhere` of all bands."""
         return max((band.elsewhere for band in self.bands), default=0.0)
 
 
 @dataclass(frozen=True)
 class Opinion:
-    """The opinion on one pin in one case: both programs on one mesh of `unknowns`, and the answer
-    of the run.
+    """The opinion on one pin in one load case: both programs on one mesh of `unknowns`, and the
+    answer of the run.
 
     displacement, stress: largest differences, relative to the largest displacement and von Mises
     stress.
-    ours, theirs: largest von Mises stress outside of singularities, both averaged at the nodes, Pa.
-    answer, error: the run's, Pa.
+    ours, theirs: largest von Mises stress outside the singular zones, averaged at the nodes in both
+    programs, Pa.
+    answer, error: maximum and error of the run, Pa.
     failure: the reason why there is no comparison, or empty.
-    contact: of a pin in its lugs, which CalculiX solves on its own mesh of `unknowns`; `theirs` is
-    then its stress at the point of our maximum.
+    contact: the comparison of a pin in its lugs, which CalculiX solves on its own mesh of
+    `unknowns`; `theirs` is then CalculiX's stress at the point of our maximum.
     """
 
     pin: str
@@ -98,19 +100,21 @@ class Opinion:
 
     @property
     def deviation(self) -> float | None:
-        """The deviation of their maximum from the run's answer, relative to it."""
+        """The relative deviation of CalculiX's maximum from the run's answer."""
         if self.theirs is None or not self.answer:
             return None
         return self.theirs / self.answer - 1.0
 
     @property
     def own_error(self) -> float:
-        """The error of the run's answer, relative to it."""
+        """The relative error of the run's answer."""
         return (self.error or 0.0) / self.answer if self.answer else 0.0
 
     @property
     def complaint(self) -> str:
-        """The differences beyond their limits, in words; empty when both programs agree."""
+        """The differences beyond their limits, in words, or the failure; empty if both programs
+        agree.
+        """
         said = self._contact() if self.contact else self._same_mesh()
         return self.failure or "; ".join(said)
 

@@ -8,14 +8,15 @@ import numpy as np
 
 from pinbase.dimensions import Floats, Force, Forces, Length, Lengths, Moments, Stress, Stresses
 
-COMPARISON_WINDOW = (0.3, 0.8)  # of the loaded length: away from the root and from the load's end
+COMPARISON_WINDOW = (0.3, 0.8)  # of the length, away from the root and from the end of the load
 
 
 @dataclass(frozen=True)
 class Difference:
-    """The difference of elasticity's stress from the beam's, as parts of the beam's peak.
+    """The difference between the stress by elasticity and the beam's, relative to the beam's peak.
 
-    It has the rms and the largest within the window, the largest anywhere and its z.
+    rms, largest: within the comparison window. largest_anywhere, largest_at: over the whole length,
+    and its z.
     """
 
     rms: float
@@ -26,12 +27,13 @@ class Difference:
 
 @dataclass(frozen=True)
 class BeamCheck:
-    """A cantilever pin's axial stress, Pa, on its line in tension along z, m.
+    """The axial stress of a cantilever pin, Pa, on its tension line along z, m, from the root to
+    the end of the load on a `band`.
 
-    It runs from the root to the end of the load on a `band`: by beam theory, and by elasticity with
-    the load on the band's surface and on the axis (a bore of the diameter axis_bore).
-    expected_offset*: how much exact elasticity is above beam theory while the load acts, away from
-    the ends (assess.opinion.cantilever), Pa.
+    The stress is by beam theory, and by elasticity with the load on the band's surface and with the
+    load on the axis (a bore of diameter axis_bore).
+    expected_offset, expected_offset_axis_load: amount by which exact elasticity exceeds beam theory
+    under the load, away from the ends (assess.opinion.cantilever), Pa.
     """
 
     pin: str
@@ -51,7 +53,7 @@ class BeamCheck:
     expected_offset_axis_load: Stress
 
     def difference(self, stress: Floats) -> Difference:
-        """The difference of `stress` from the beam's."""
+        """Return the difference between `stress` and the beam's."""
         z, beam = self.z, self.beam_axial_stress
         error = (stress - beam) / beam.max()
         loaded = z[-1]
@@ -76,10 +78,10 @@ class BeamCheck:
 
     @property
     def on_surface_beyond_offset(self) -> Difference:
-        """The same after the expected offset is added to the beam."""
+        """The difference `on_surface` after the expected offset is added to the beam's stress."""
         return self.difference(self.fea_axial_stress - self.expected_offset)
 
     @property
     def on_axis_beyond_offset(self) -> Difference:
-        """The same after the expected offset is added to the beam."""
+        """The difference `on_axis` after the expected offset is added to the beam's stress."""
         return self.difference(self.fea_axial_stress_axis_load - self.expected_offset_axis_load)

@@ -1,8 +1,10 @@
-"""Decks for a reviewer: one pin at its governing instant, for another program, in his units.
+"""Input decks for a reviewer: one pin at its governing instant, for another program, in the
+reviewer's units.
 
-They are those of the second opinion. A pin with prescribed loads has the solid model's first mesh,
-supports and nodal forces, so that what pinstress finds on this very mesh is known. A pin in lugs
-has both bodies and their contact, on CalculiX's finer mesh of `calculix_in_lugs`, at full loads.
+The decks are those of the second opinion. For a pin with prescribed loads, the deck has the first
+mesh, supports and nodal forces of the solid model, so that pinstress's result on the same mesh is
+known. For a pin in lugs, it has pin and lugs in contact, on CalculiX's finer mesh of
+`calculix_in_lugs`, at full loads.
 """
 
 from __future__ import annotations
@@ -40,17 +42,18 @@ class DeckUnits:
 
 @dataclass(frozen=True)
 class ReviewDeck:
-    """A deck without its head.
+    """A deck without its header.
 
-    lines: its text.
-    node, at: number and coordinates (3,), m, of the node at which stress is compared, in the deck's
-    axes.
-    von_mises: of pinstress there, Pa. same_mesh: whether it is that of this mesh.
-    under: the lug on whose band the node lies, so that the stress is without that of its pressure
-    (fea.harmonic.free_surface); empty elsewhere.
+    lines: the text of the deck.
+    node, at: number and coordinates (3,), m, in the deck's axes, of the node at which the stress is
+    compared.
+    von_mises: stress by pinstress there, Pa. same_mesh: whether this stress was computed on the
+    mesh of the deck.
+    under: name of the lug on whose band the node lies; the stress is then without the local stress
+    of the lug's pressure (fea.harmonic.free_surface). Empty elsewhere.
     unknowns: of the model.
-    angle: by which its axes are turned from the pin's about z, rad.
-    half: whether it is the half in y > 0.
+    angle: angle by which the deck's axes are rotated from the pin's about z, rad.
+    half: whether only the half in y > 0 is modelled.
     """
 
     lines: Iterable[str]
@@ -75,7 +78,7 @@ def prescribed_deck(
 ) -> ReviewDeck:
     """Return the deck of a pin under prescribed loads at the governing instant of a peak.
 
-    clamps: names of its clamped surfaces. cases: that of the peak among them. distance: as in
+    clamps: names of the clamped surfaces. cases: must include the case of the peak. distance: as in
     fea.core.requirement.Requirement.
 
     Raises: MeshError, SolveError.
@@ -100,7 +103,8 @@ def contact_deck(
 ) -> ReviewDeck:
     """Return the deck of a pin in contact with its lugs at the governing instant of a peak.
 
-    Raises: ArgumentError for loads and joints that it lacks; SolveError for forces out of balance.
+    Raises: ArgumentError for loads and joints that a deck cannot have; SolveError for unbalanced
+    forces.
     """
     loads = transverse(seated, peak.governing)
     fineness = replace(meshes_for(loads)[1], scale=1.0)

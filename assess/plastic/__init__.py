@@ -1,1 +1,1 @@
-"""Past yield: the load that a pin carries when it flows, and what is left of its shape."""
+"""The load at which a pin collapses plastically, and its permanent set."""

@@ -1,4 +1,4 @@
-"""The processor time that a limit load may take when nobody has asked for it."""
+"""The processor time that a limit load may take if the user has not requested it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from dataclasses import dataclass, field
 
 
 class OutOfTimeError(Exception):
-    """The budget is spent, or what comes next would exceed it."""
+    """The error that the budget is spent, or that the next step would exceed it."""
 
 
 @dataclass(frozen=True)
 class Budget:
-    """Processor time that may be spent.
+    """A budget of processor time.
 
-    seconds: of this thread from `begin` on, which is the moment of construction.
+    seconds: processor time that this thread may take after `begin`, which is the time of
+    construction by default.
     """
 
     seconds: float = math.inf

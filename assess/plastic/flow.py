@@ -1,8 +1,8 @@
 """Von Mises plasticity with isotropic hardening at a point: radial return, consistent tangent.
 
-The yield stress grows with the plastic strain a along straight pieces, so s(a) + 3 G a does too,
-and the condition for the plastic strain after a step, s(a) + 3 G a = q + 3 G a0 with the Mises
-stress q of the trial state, is solved exactly by looking it up. The step is fully implicit.
+The yield stress s is a piecewise linear function of the equivalent plastic strain a, and so is
+s(a) + 3 G a. The condition for a after a step, s(a) + 3 G a = q + 3 G a0 with the von Mises stress
+q of the trial state, is therefore solved exactly by interpolation. The step is fully implicit.
 
 Source: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), boxes 3.1 and 3.2.
 """
@@ -19,10 +19,10 @@ from fea.core.material import Material
 from geometry import ArgumentError
 from pinbase.arrays import Floats
 
-# Part of the elastic stiffness in the tangent: keeps it positive definite at the limit load, where
-# Newton's method then converges linearly, by this ratio. The solution does not depend on it.
+# Share of the elastic stiffness in the tangent. It keeps the tangent positive definite at the limit
+# load, where Newton's method then converges linearly with this ratio. The solution is unaffected.
 ELASTIC_SHARE = 1e-6
-# Shears count twice in a product of tensors.
+# Shear components count twice in the inner product of two tensors.
 VOIGT_WEIGHTS = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 _IDENTITY = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 DEVIATOR = np.diag([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]) - np.outer(_IDENTITY, _IDENTITY) / 3.0
@@ -34,7 +34,7 @@ class Flow(NamedTuple):
     stress: (..., 6) Pa.
     plastic: plastic strain (..., 6) with tensor shears.
     equivalent: equivalent plastic strain (...).
-    tangent: (..., 6, 6) Pa, consistent with the step, for strains with doubled shears.
+    tangent: (..., 6, 6) Pa, consistent with the step, for strains with engineering shears.
     """
 
     stress: Floats
@@ -45,7 +45,7 @@ class Flow(NamedTuple):
 
 @dataclass(frozen=True)
 class FlowRule:
-    """An elastic-plastic material; without hardening its yield stress stays as it is.
+    """The flow rule of an elastic-plastic material; without hardening the yield stress is constant.
 
     Raises: ArgumentError for a material without a yield strength.
     """
@@ -61,9 +61,9 @@ class FlowRule:
 
     @cached_property
     def curve(self) -> tuple[Floats, Floats]:
-        """Equivalent plastic strains and yield stresses (Pa) at the ends of the straight pieces.
+        """The equivalent plastic strains and yield stresses (Pa) at the ends of the linear pieces.
 
-        The yield stress is constant after the last.
+        The yield stress is constant beyond the last point.
         """
         strength = self.material.yield_strength
         assert strength is not None
@@ -77,7 +77,7 @@ class FlowRule:
         return float(self.curve[1][-1])
 
     def step(self, strain: Floats, plastic: Floats, equivalent: Floats) -> Flow:
-        """The state after a fully implicit step to a total strain, by radial return.
+        """Return the state after a fully implicit step to a total strain, by radial return.
 
         strain: (..., 6) total, with tensor shears, at the end of the step.
         plastic: (..., 6) plastic strain at its start.
@@ -86,7 +86,8 @@ class FlowRule:
         Source: Simo & Hughes, boxes 3.1 and 3.2.
         """
         shear = self.material.lame[1]
-        # Elastic predictor: no plastic flow in the step. Flow then changes the deviator alone.
+        # Elastic predictor: no plastic flow in the step. Plastic flow then changes only the
+        # deviator.
         trial = self.material.stress(strain - plastic)
         pressure = trial[..., :3].sum(-1, keepdims=True) / 3.0
         deviator = trial - pressure * _IDENTITY
@@ -118,11 +119,11 @@ class FlowRule:
         )
 
     def _tangent(self, ratio: Floats, normal: Floats, unit: Floats) -> Floats:
-        """The consistent tangent (..., 6, 6), Pa, for strains with doubled shears.
+        """Return the consistent tangent (..., 6, 6), Pa, for strains with engineering shears.
 
-        ratio: (...) part of the elastic shear stiffness that all deviators keep.
-        normal: (...) part that is missing along the flow.
-        unit: (..., 6) deviators of a Mises stress of one.
+        ratio: (...) part of the elastic shear stiffness that remains for all deviators.
+        normal: (...) additional part that is lost in the direction of flow.
+        unit: (..., 6) deviators scaled to a von Mises stress of 1.
         """
         lam, shear = self.material.lame
         bulk = lam + 2.0 * shear / 3.0
@@ -132,9 +133,9 @@ class FlowRule:
         return np.asarray((1.0 - ELASTIC_SHARE) * softer + ELASTIC_SHARE * elastic)
 
     def dissipation(self, strain: Floats) -> Floats:
-        """The largest plastic work per volume (...), Pa, that a strain increment (..., 6) can take.
+        """Return the largest plastic work per volume (...), Pa, of a strain increment (..., 6).
 
-        It is the strongest yield stress times the equivalent strain of its deviator.
+        The work is the largest yield stress times the equivalent strain of the deviator.
         """
         deviator = strain - strain[..., :3].mean(-1, keepdims=True) * _IDENTITY
         return np.asarray(self.strongest * np.sqrt(2.0 / 3.0 * (deviator**2 @ VOIGT_WEIGHTS)))

@@ -1,29 +1,29 @@
-"""Plastic hinges and slip of a pin as a beam: bounds of its load factor at every instant.
+"""Plastic hinges and slip of a pin as a beam: bounds of the load factor at every instant.
 
-Static theorem: internal forces in equilibrium, here the elastic ones, of which every section can
-carry its own,
+Static theorem (lower bound): internal forces that are in equilibrium, here the elastic ones, and
+that every section can carry,
 
     g(M/Mp, N/Np)^2 + (V/Vs + T/Tp)^2 <= 1.
 
-g is the part that is used of the curve of bending with an axial force
-(fea.beam.plastic_interaction). Torsion has one shear stress everywhere, Tp the plastic torque;
-shear has that of a field with s_tz = -C sin theta, in equilibrium with elastic bending, whose
-largest value is the V Q / (I t) of the neutral axis (3/4 A and half of A resist in a solid bar and
-a thin tube), so that the sum of both is nowhere exceeded. It leaves sqrt(1 - (V/Vs + T/Tp)^2) of
-the yield stress for bending and pulling.
+g is the utilisation of the interaction curve of bending with an axial force
+(fea.beam.plastic_interaction). In torsion the shear stress is the same everywhere, with Tp the
+plastic torque. The shear stress of V is s_tz = -C sin theta, a field in equilibrium with elastic
+bending; its largest value is V Q / (I t) at the neutral axis (the resisting area is 3/4 A in a
+solid bar and half of A in a thin tube). The sum of both stresses is therefore nowhere exceeded. It
+leaves sqrt(1 - (V/Vs + T/Tp)^2) of the yield stress for bending and the axial force.
 
-Kinematic theorem: the least of the work of flow over the power of the loads among mechanisms. Slip
-of a section costs Vp = A s_y / sqrt 3, twist Tp; to slip apart along a plane of slope t from the
-section Vp (t + 1 / t), which is 2 Vp = 1.155 Np if there is room for a slope of one. A hinge bends
-and stretches as the curve g has it, or twists as well, which takes
-s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length at most (by Schwarz's inequality, for a stretch
-e, a curvature k and a twist t). One is enough where one side of a span is free, three, which bend
-alone, where both are clamped. Next to a clamp or a shoulder the section cannot warp and contract:
-a hinge is MIN_HINGE_DISTANCE away from it, where the solid has it too, and what is nearer slips
-and twists.
+Kinematic theorem (upper bound): the least ratio, among mechanisms, of the work of flow to the power
+of the loads. Slip of a section takes Vp = A s_y / sqrt 3, twist takes Tp. To slip apart along a
+plane with slope t against the section takes Vp (t + 1 / t), which is 2 Vp = 1.155 Np where there is
+room for a slope of one. A hinge bends and stretches along the curve g. If it also twists, it takes
+at most s_y sqrt(A (A e^2 + I k^2 + J t^2 / 3)) per length (by Schwarz's inequality, for a stretch
+e, a curvature k and a twist t). One hinge is enough where one side of a span is free. Where both
+sides are clamped, three hinges are needed, which only bend. Next to a clamp or a shoulder the
+section cannot warp and contract: a hinge is at least MIN_HINGE_DISTANCE away from it, where the
+solid has it too. Closer sections slip and twist.
 
-Both are theorems of beams. The solid differs by what happens within a diameter of loads and clamps,
-so of a bracket only what is beyond HINGE_ERROR decides.
+Both theorems are applied to beams. The solid differs within a diameter of loads and clamps, so a
+bound decides only if it is beyond 1 by more than HINGE_ERROR.
 
 Source: B. G. Neal, The Plastic Methods of Structural Analysis (1977), chapters 2, 3 and 6.
 """
@@ -44,18 +44,19 @@ from fea.core.pin_loads import Loads
 from geometry import Pin
 from pinbase.arrays import Floats, Mask
 
-# Diameters between a clamp and the hinge next to it: where the solid has it, too.
+# Distance, in diameters, between a clamp and the nearest hinge, as in the solid.
 MIN_HINGE_DISTANCE = 0.75
-# Of the factor: an allowance, checked against solids of the landing gear (docs/past-yield.md).
+# Allowance on the load factor, checked against solids of the landing gear (docs/past-yield.md).
 HINGE_ERROR = 0.15
-SECTIONS_PER_CELL = 101  # sections that are checked in each cell
+SECTIONS_PER_CELL = 101  # sections that are checked in each cell of the beam
 
 
 @dataclass(frozen=True)
 class BeamBounds:
-    """Bounds of the load factor at every instant, (T,); infinite where nothing acts.
+    """Bounds of the load factor at every instant, (T,); infinite where no load acts.
 
-    slip: the upper bound by slip alone, which holds for the solid as well: what slips is rigid.
+    slip: the upper bound by slip alone. It also holds for the solid, because the slipping parts are
+    rigid.
     """
 
     lower: Floats
@@ -64,15 +65,15 @@ class BeamBounds:
 
     @property
     def governing(self) -> int:
-        """Number of the instant with the least lower bound."""
+        """The number of the instant with the smallest lower bound."""
         return int(self.lower.argmin())
 
 
 def beam_bounds(pin: Pin, material: Material, clamps: tuple[str, ...], loads: Loads) -> BeamBounds:
-    """Bounds of the load factor of a pin with a yield strength, by both theorems for beams.
+    """Return the bounds of the load factor of a pin, by both theorems for beams.
 
-    The upper bound takes the last hardening stress, if there is any, and the lower one the yield
-    strength.
+    The lower bound uses the yield strength, which the material must have; the upper bound uses the
+    last hardening stress, if there is one.
     """
     units = acting(loads)
     first = material.yield_strength
@@ -103,7 +104,7 @@ def beam_bounds(pin: Pin, material: Material, clamps: tuple[str, ...], loads: Lo
 def _sampled(
     forces: InternalForces, span: Span, amounts: Floats
 ) -> tuple[Floats, list[Circle], Floats]:
-    """z (S,), m, sections (S), and V, M, N, T there by phase, (T, 2, S, 4)."""
+    """Return z (S,), m, the sections (S), and V, M, N, T there by phase, (T, 2, S, 4)."""
     cells = np.repeat(np.arange(span.first, span.last), SECTIONS_PER_CELL)
     part = np.tile(np.linspace(0.0, 1.0, SECTIONS_PER_CELL), span.last - span.first)
     z = forces.stations[cells] + part * np.diff(forces.stations)[cells]
@@ -112,22 +113,23 @@ def _sampled(
 
 
 def _strengths(sections: list[Circle]) -> Floats:
-    """Vp, Mp, Np, Tp (S, 4) per Pa of yield stress."""
+    """Return Vp, Mp, Np and Tp of the sections per Pa of yield stress, (S, 4)."""
     return np.array(
         [(s.area / math.sqrt(3.0), s.plastic_modulus, s.area, _torque(s)) for s in sections]
     ).reshape(-1, 4)
 
 
 def _torque(section: Circle) -> float:
-    """Plastic torque per Pa of yield stress, m^3."""
+    """Return the plastic torque per Pa of yield stress, m^3."""
     return plastic_torque(section) / math.sqrt(3.0)
 
 
 def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, Floats]:
-    """The use of sections by bending and axial force, upper and lower estimate, (T, S).
+    """Return an upper and a lower estimate of the utilisation of the sections by bending and axial
+    force, (T, S) each.
 
-    The lower one includes torsion: the work of flow is no more than that by the mean square of its
-    strain.
+    The lower estimate includes torsion: the work of flow is at most that by the root mean square of
+    its strain.
     """
     most, least = np.empty((2, *across.shape[:2]))
     for section in set(sections):
@@ -151,10 +153,10 @@ def _bending_and_axial(sections: list[Circle], across: Floats) -> tuple[Floats, 
 
 
 def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
-    """Lower bounds (T,) per Pa of yield stress.
+    """Return the lower bounds (T,) per Pa of yield stress.
 
-    across: (T, S, 4) used parts.
-    bent: (T, S) use by bending and axial force.
+    across: (T, S, 4) V, M, N and T over the plastic strengths.
+    bent: (T, S) utilisation by bending and axial force.
     """
     peak = np.array([s.vq_it for s in sections])
     sheared = across[..., SHEAR] * peak + across[..., TORQUE]
@@ -162,10 +164,10 @@ def _static(sections: list[Circle], across: Floats, bent: Floats) -> Floats:
 
 
 def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
-    """Upper bounds (T,) per Pa of yield stress, by slip.
+    """Return the upper bounds (T,) by slip, per Pa of yield stress.
 
-    One section slips, or, in a span clamped at both ends, the part between two sections; the ends
-    of cells suffice for these.
+    One section slips or, in a span clamped at both ends, the part between two sections. For the
+    latter only the ends of cells need be tried.
     """
     if not (span.left and span.right):
         return _inverse((np.linalg.norm(inside, axis=1) / strong)[..., SHEAR].max(axis=1))
@@ -177,11 +179,12 @@ def _slip(span: Span, strong: Floats, inside: Floats) -> Floats:
 
 
 def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
-    """Power over work (T,) of one section that twists, slips apart or is a hinge.
+    """Return the largest ratio of power to work (T,) of one section that twists, slips apart or is
+    a hinge.
 
     room: (S,) as in `_room`.
-    across: (T, S, 4) used parts.
-    bent: of a hinge, (T, S).
+    across: (T, S, 4) V, M, N and T over the plastic strengths.
+    bent: (T, S) ratio of a hinge.
     """
     steep = np.minimum(room, 1.0)  # of a plane that ends before clamps and thicker sections
     apart = math.sqrt(3.0) * steep / (1.0 + steep**2) * across[..., AXIAL]
@@ -190,7 +193,7 @@ def _one_mechanism(room: Floats, across: Floats, bent: Floats) -> Floats:
 
 
 def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
-    """Distance (S,) from clamps and thicker sections over the outer radius."""
+    """Return the distance (S,) from clamps and thicker sections, divided by the outer radius."""
     outer, inner = np.array([(s.outer, s.inner) for s in sections]).T
     more = (outer > (1.0 + 1e-9) * outer[:, None]) | (inner < (1.0 - 1e-9) * inner[:, None])
     room = np.where(more, np.abs(z - z[:, None]), np.inf).min(axis=1)
@@ -202,12 +205,13 @@ def _room(span: Span, sections: list[Circle], z: Floats) -> Floats:
 
 
 def _three_hinges(z: Floats, away: Mask, strong: Floats, moment: Floats) -> Floats:
-    """Power over work (T,) of a hinge near each end of a span and one between.
+    """Return the largest ratio of power to work (T,) of three hinges: one near each end of a span,
+    and one between them.
 
     z: (S,) m.
-    away: (S,) where a hinge may be.
-    strong: (S,) plastic moments.
-    moment: (T, 2, S).
+    away: (S,) mask of the sections where a hinge is allowed.
+    strong: (S,) plastic moments per Pa of yield stress.
+    moment: (T, 2, S) bending moments by phase.
     """
     places = np.flatnonzero(away)
     if len(places) < 3:

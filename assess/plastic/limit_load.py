@@ -1,17 +1,18 @@
-"""The limit load of a flowing body: its bounds on a mesh, and those of a sequence of meshes.
+"""The limit load of an elastic-plastic body: its bounds on one mesh and on a sequence of meshes.
 
-On a mesh the last state in equilibrium is a stress field that yields at no quadrature point more
-than it can. Its load factor is no lower bound by itself: equilibrium is of whole elements, and what
-that leaves free (normal stresses across, which change sign within an element) lets the stress along
-exceed yield by 1 to 3 %, and the factor be above the exact one, as for any field of displacements
-that is too stiff. No finer mesh takes that away soon: 0.35 and 0.43 % in bending on the first two.
-So the lower bound is the factor less what it changed from the coarser to the finer mesh, and less
-EQUILIBRIUM_ALLOWANCE: twice the largest excess over 17 closed forms, rounded up
-(docs/past-yield.md). The increment of displacement, as a mechanism, gives the upper bound
-(assess.plastic.mechanism).
+On a mesh the last state in equilibrium is a stress field that exceeds yield at no quadrature point.
+Its load factor is not a lower bound by itself. Equilibrium holds only for whole elements. The
+freedom that remains (transverse normal stresses that change sign within an element) lets the
+longitudinal stress exceed yield by 1 to 3 %, and the factor exceed the exact one, as with any
+displacement field, which is too stiff. A finer mesh hardly reduces this: the excess is 0.35 and
+0.43 % in bending on the first two meshes. The lower bound is therefore the factor minus its change
+from the coarser to the finer mesh, minus EQUILIBRIUM_ALLOWANCE: twice the largest excess over 17
+closed forms, rounded up (docs/past-yield.md). The last increment of displacement, taken as a
+mechanism, gives the upper bound (assess.plastic.mechanism).
 
 Source: W. F. Chen, D. J. Han, Plasticity for Structural Engineers (1988), chapter 8, for the
-theorems; what elastic displacements give bounds the factor in the same way and sets the steps.
+theorems. The elastic displacements, taken as a mechanism, bound the factor in the same way and set
+the size of the load steps.
 """
 
 from __future__ import annotations
@@ -28,28 +29,28 @@ from assess.plastic.records import LoadCurve
 from fea.core.linear_solver import SolveError
 from pinbase.arrays import Floats
 
-# Works at which equilibrium is sought, over that of the elastic body at its bound.
-# Fine where the body begins to flow, coarse beyond; chosen by judgement.
+# Load steps: the work at which equilibrium is sought, relative to that of the elastic body at its
+# bound. Fine where the body begins to flow, coarse beyond; chosen by judgement.
 WORK_RATIOS = (0.25, 0.4, 0.55, 0.7, 0.85, 1.0, 1.3, 1.7, 2.2, 3.0, 4.0, 6.0, 9.0, 13.0, 20.0)
-# Of the factor, for equilibrium of whole elements alone: twice the largest excess over 17 closed
-# forms, 0.43 % (docs/past-yield.md, `python -m benchmarks limit_load`), rounded up.
+# Allowance on the factor, since equilibrium holds only for whole elements: twice the largest excess
+# over 17 closed forms, 0.43 % (docs/past-yield.md, `python -m benchmarks limit_load`), rounded up.
 EQUILIBRIUM_ALLOWANCE = 0.01
-# When the path ends; chosen by judgement.
-STEP_GROWTH_TOLERANCE = 2e-3  # relative growth of the factor in the last step, at most
-MAX_FLOW_WORK_RATIO = 1.02  # work of flow over that of the loads in that step, at most
-MIN_FLOW_WORK_RATIO = 0.97  # factor over work of flow, at least, where Newton's method fails
-ROUND_OFF = 1e-9  # of the largest displacement: a permanent one below it is none
+# End of the load path; chosen by judgement.
+STEP_GROWTH_TOLERANCE = 2e-3  # largest relative growth of the factor in the last step
+MAX_FLOW_WORK_RATIO = 1.02  # largest ratio of the bound of the last increment to the factor
+MIN_FLOW_WORK_RATIO = 0.97  # smallest ratio of factor to that bound where Newton's method fails
+ROUND_OFF = 1e-9  # relative to the largest displacement: a smaller permanent one is zero
 
 
 @dataclass(frozen=True)
 class MeshBracket:
     """The limit load on one mesh.
 
-    reached: the largest load factor in equilibrium, no bound by itself.
+    reached: the largest load factor in equilibrium, which is not a bound by itself.
     above: the upper bound.
     curve: load factors and displacements.
-    steps, iterations: that it took.
-    last: the last state.
+    steps, iterations: the numbers of load steps and of Newton iterations.
+    last: the last state in equilibrium.
     """
 
     unknowns: int
@@ -61,7 +62,7 @@ class MeshBracket:
     last: State
 
     def permanent_at(self, factor: float) -> float:
-        """The permanent part of the largest displacement (m) after a load factor."""
+        """Return the permanent part of the largest displacement (m) after a load factor."""
         rising = np.maximum.accumulate(self.curve.factor)
         return float(np.interp(factor, rising, self.curve.permanent))
 
@@ -69,9 +70,10 @@ class MeshBracket:
 def limit_on_mesh(
     body: FlowingBody, forces: Floats, finer: RefinedElements, budget: Budget | None = None
 ) -> MeshBracket:
-    """The limit load of a body under forces (U,), N.
+    """Return the limit load of a body on its mesh.
 
-    finer: the same elements with more quadrature points, for the mechanism's work.
+    forces: (U,) N.
+    finer: the same elements with more quadrature points, for the work of the mechanism.
 
     Raises: SolveError when equilibrium is not found before the factor settles; OutOfTimeError.
     """
@@ -79,8 +81,8 @@ def limit_on_mesh(
     first = work_of_flow(body, finer.elements, path.elastic)
     states, flow_factor = [path.start()], np.inf
     try:
-        # Follow the path step by step; `flow_factor` is the upper bound by the step's increment as
-        # a mechanism, so the factor has settled when it nearly reaches that.
+        # Follow the load path step by step. `flow_factor` is the upper bound that the step's
+        # increment gives as a mechanism; the factor has settled when it nearly reaches this bound.
         for state in path.steps(np.array(WORK_RATIOS) * first):
             states.append(state)
             flow_work = work_of_flow(body, finer.elements, state.unknowns - states[-2].unknowns)
@@ -88,8 +90,8 @@ def limit_on_mesh(
             if _settled(states[-2], state, flow_factor):
                 break
     except SolveError:
-        # Newton's method fails where hardly anything resists any more: accepted near the upper
-        # bound.
+        # Newton's method fails where the tangent stiffness nearly vanishes; the last state is
+        # accepted if it is near the upper bound.
         if not states[-1].factor > MIN_FLOW_WORK_RATIO * flow_factor:
             raise
     before, last = states[-2:]
@@ -106,7 +108,7 @@ def limit_on_mesh(
 
 
 def _settled(before: State, now: State, flow_factor: float) -> bool:
-    """Whether the factor has stopped growing and its step is nearly a mechanism."""
+    """Whether the factor has stopped growing and the last step is nearly a mechanism."""
     if before.factor <= 0.0:
         return False
     return (
@@ -116,13 +118,15 @@ def _settled(before: State, now: State, flow_factor: float) -> bool:
 
 
 def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> LoadCurve:
-    """Load factors, largest displacements, and their permanent parts after elastic unloading."""
+    """Return the load factors, the largest displacements, and their permanent parts after elastic
+    unloading.
+    """
 
     def largest(unknowns: Floats) -> float:
         return float(np.linalg.norm(body.displacement(unknowns), axis=1).max())
 
     def permanent(state: State) -> float:
-        """The displacement that remains, without round-off where a state is elastic throughout."""
+        """Return the displacement that remains after unloading; 0 if it is only round-off."""
         remains = largest(state.unknowns - state.factor * path.elastic)
         return remains if remains > ROUND_OFF * largest(state.unknowns) else 0.0
 
@@ -134,7 +138,9 @@ def _curve(body: FlowingBody, path: EquilibriumPath, states: list[State]) -> Loa
 
 
 def bracket(meshes: list[MeshBracket]) -> tuple[float, float]:
-    """The lower and the upper bound of the load factor from two meshes, the coarser first."""
+    """Return the lower and upper bound of the load factor from the last two meshes, of which the
+    first is coarser.
+    """
     coarse, fine = meshes[-2:]
     doubt = abs(coarse.reached - fine.reached) + EQUILIBRIUM_ALLOWANCE * fine.reached
     return fine.reached - doubt, max(fine.above.factor, fine.reached)

@@ -1,8 +1,9 @@
-"""Equilibrium of a flowing body along a path of its loads, past where they can no longer grow.
+"""Equilibrium of an elastic-plastic body along its load path.
 
-The loads are a factor times given forces f. Each step prescribes the work c = f u instead of the
-factor, which is then an unknown, and its equations are those of the least of a convex function (the
-incremental energy) on a plane: Newton's method with a search along its direction finds it.
+The path continues beyond the point where the loads can no longer grow. The loads are a factor times
+given forces f. Each step prescribes the work c = f u instead of the factor, which then is an
+unknown. The equations of a step are those of the minimum of a convex function (the incremental
+energy) on a plane. Newton's method with a line search finds it.
 
 Source: J. C. Simo, T. J. R. Hughes, Computational Inelasticity (1998), section 4.3, for the
 incremental energy; J.-L. Batoz, G. Dhatt, Int. J. Num. Meth. Eng. 14 (1979) 1262, for the two
@@ -22,9 +23,9 @@ from assess.plastic.flow import Flow
 from fea.core.linear_solver import Analysis, SolveError
 from pinbase.arrays import Floats
 
-RESIDUAL_TOLERANCE = 1e-6  # residual over the loads
-MAX_NEWTON_ITERATIONS = 40  # of one step
-# Part of the initial slope that a line search may leave; chosen by judgement.
+RESIDUAL_TOLERANCE = 1e-6  # residual relative to the loads
+MAX_NEWTON_ITERATIONS = 40  # in one step
+# Largest remaining slope after a line search, relative to the initial one; chosen by judgement.
 MAX_SLOPE_SHARE = 0.8
 MAX_STEP_HALVINGS = 6
 
@@ -33,11 +34,11 @@ MAX_STEP_HALVINGS = 6
 class State:
     """A state in equilibrium.
 
-    factor: of the loads.
+    factor: the load factor.
     unknowns: (U,) m.
-    work: of the loads per load factor, J.
-    flow: state of the quadrature points.
-    residuals: of the iterations, over the loads.
+    work: the work of the loads at a load factor of 1, J.
+    flow: the state of the quadrature points.
+    residuals: the residual of each iteration, relative to the loads.
     """
 
     factor: float
@@ -51,9 +52,9 @@ class EquilibriumPath:
     """The equilibrium of a body along its load path, by prescribed work.
 
     forces: (U,) N.
-    budget: asked before every iteration.
+    budget: checked before every iteration.
 
-    Raises: SolveError for a body that is not constrained, from here and from the steps.
+    Raises: SolveError for a body that is not constrained, here and in the steps.
     """
 
     def __init__(self, body: FlowingBody, forces: Floats, budget: Budget | None = None) -> None:
@@ -64,13 +65,14 @@ class EquilibriumPath:
         self.compliance = float(forces @ self.elastic)
 
     def start(self) -> State:
-        """The state without loads."""
+        """Return the state without loads."""
         return State(0.0, np.zeros(self.body.size), 0.0, self.body.at_rest())
 
     def steps(self, works: Floats) -> Iterator[State]:
-        """States at rising works (J). A step that Newton's method cannot solve is halved.
+        """Yield the states at increasing works (J). A step that Newton's method cannot solve is
+        halved.
 
-        Raises: SolveError when a small part of a step cannot be solved either.
+        Raises: SolveError if the smallest fraction of a step cannot be solved either.
         """
         before, now = None, self.start()
         for work in works:
@@ -79,7 +81,7 @@ class EquilibriumPath:
             yield now
 
     def _reach(self, now: State, before: State | None, work: float) -> State:
-        """The state at a work (J), or at the first of its halved steps that can be solved."""
+        """Return the state at a work (J), or after the first halved step that can be solved."""
         for _ in range(MAX_STEP_HALVINGS):
             try:
                 return self.step(now, before, work)
@@ -88,11 +90,13 @@ class EquilibriumPath:
         raise failed
 
     def step(self, now: State, before: State | None, work: float) -> State:
-        """The state at a work (J), from the one now and, for a guess, the one before that.
+        """Return the state at a work (J).
+
+        now: the current state. before: the state before it, for the predictor; None at the start.
 
         Raises: SolveError; OutOfTimeError.
         """
-        # Predictor: along the elastic response at first, then along the last increment.
+        # Predictor: along the elastic response in the first step, then along the last increment.
         guess = (work - now.work) * (
             self.elastic / self.compliance
             if before is None
@@ -121,15 +125,16 @@ class EquilibriumPath:
         )
 
     def _search(self, u: Floats, along: Floats, before: Flow) -> tuple[Floats, Flow]:
-        """The point along a direction at which the incremental energy is about least, and its flow.
+        """Return the point along a direction where the incremental energy is nearly smallest, and
+        the state of flow there.
 
         The energy is convex, so its slope along the direction, the unbalanced force times the
-        direction, rises. The full step is taken if the slope is still negative there; otherwise the
-        root is bracketed by regula falsi, each step at least a tenth of the bracket.
+        direction, increases. The full step is taken if the slope is still negative there. Otherwise
+        regula falsi brackets the root; each step moves by at least a tenth of the bracket.
         """
         flow = self.body.flow(u + along, before)
         high, at_high = 1.0, self._slope(flow, along)
-        # The energy still falls at the full step, or has its least there: take it.
+        # The energy still falls at the full step, or is smallest there: take the full step.
         if at_high <= 0.0:
             return u + along, flow
         low, at_low, at = 0.0, self._slope(self.body.flow(u, before), along), 1.0
@@ -137,7 +142,7 @@ class EquilibriumPath:
         for _ in range(MAX_STEP_HALVINGS):
             if abs(at_high) <= most or at_low >= 0.0:
                 break
-            # Regula falsi on the slope, away from the lower end by a tenth of the bracket at least.
+            # Regula falsi on the slope, at least a tenth of the bracket away from the lower end.
             at = low + max((high - low) * at_low / (at_low - at_high), 0.1 * (high - low))
             flow = self.body.flow(u + at * along, before)
             middle = self._slope(flow, along)
@@ -150,5 +155,5 @@ class EquilibriumPath:
         return u + at * along, flow
 
     def _slope(self, flow: Flow, along: Floats) -> float:
-        """The slope of the incremental energy along a direction, J."""
+        """Return the slope of the incremental energy along a direction, J."""
         return float(self.body.forces(flow.stress) @ along)

@@ -1,12 +1,12 @@
-"""A pin as a flowing body of hexahedra: the modelled part of it, its supports, its loads.
+"""A pin as an elastic-plastic body of hexahedra: the modelled sector, its supports, its loads.
 
-Elements have 20 nodes and 2 x 2 x 2 quadrature points, which leaves no volumetric locking when the
-material flows (`python -m benchmarks limit_load` compares them with tetrahedra).
+Elements have 20 nodes and 2 x 2 x 2 quadrature points, which avoids volumetric locking in plastic
+flow (`python -m benchmarks limit_load` compares them with tetrahedra).
 
-The modelled part of a turn depends on the loads. Reflected at their plane nothing changes, so half
-is enough. Turned about the axis by half a turn, odd harmonics change sign, and with them the whole
-solution, because yield is the same in tension and compression: half is enough again, or a quarter
-where both apply.
+The size of the modelled sector depends on the loads. If all loads are symmetric about one plane,
+half of the pin is enough. If all harmonics are odd, a rotation by half a turn changes the sign of
+the loads and of the whole solution, because yield is the same in tension and compression: again
+half of the pin is enough. If both apply, a quarter is enough.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ from geometry.mesh.hexahedra import HexMesh, HexSize, hexahedra
 from pinbase.arrays import Floats, Ints
 from pinbase.grouped import grouped
 
-OUT_OF_PLANE_TOLERANCE = 1e-6  # of the largest load of its kind: less out of the plane is zero
+OUT_OF_PLANE_TOLERANCE = 1e-6  # relative to the largest load of its kind: smaller loads are zero
 
 Acting = tuple[tuple[UnitLoad, int, float], ...]  # unit loads with their phase and amount
-Acted = tuple[float, Traction, int, int]  # the amount of a traction, it, its harmonic and phase
+Acted = tuple[float, Traction, int, int]  # amount, traction, harmonic and phase
 
 
 @dataclass(frozen=True)
 class Sector:
-    """The modelled part of a turn.
+    """The modelled sector of a pin.
 
-    quarters: their number, 1, 2 or 4.
-    mirror: at the plane y = 0.
-    odd: the solution changes sign by half a turn.
+    quarters: number of modelled quarters, 1, 2 or 4.
+    mirror: whether the solution is symmetric about the plane y = 0.
+    odd: whether the solution changes sign under rotation by half a turn.
     """
 
     quarters: int
@@ -54,10 +54,10 @@ class Sector:
 
 @dataclass(frozen=True)
 class PinBody:
-    """The modelled part of a pin as a flowing body.
+    """The modelled sector of a pin as an elastic-plastic body.
 
-    forces: (U,) N, on its unknowns.
-    mesh, sector: of which it is made.
+    forces: (U,) N, on the free unknowns.
+    mesh, sector: the mesh and the sector from which the body was made.
     """
 
     body: FlowingBody
@@ -67,7 +67,7 @@ class PinBody:
 
 
 def plane_of(loads: Loads, instant: int) -> float:
-    """Direction (rad from x) of the largest transverse load."""
+    """Return the direction (rad from x) of the largest transverse load; 0 without any."""
     vectors = [both[instant] for load, both in loads.coefficients().items() if load.n == 1]
     if not vectors:
         return 0.0
@@ -77,7 +77,7 @@ def plane_of(loads: Loads, instant: int) -> float:
 
 
 def sector_of(acting: Acting) -> Sector:
-    """The smallest part of the pin that the symmetry of its loads allows."""
+    """Return the smallest sector of the pin that the symmetry of its loads allows."""
     largest: dict[str, float] = {}
     for load, _, amount in acting:
         largest[load.kind] = max(largest.get(load.kind, 0.0), abs(amount))
@@ -92,7 +92,7 @@ def sector_of(acting: Acting) -> Sector:
 
 
 def acting_at(loads: Loads, instant: int, angle: float = 0.0) -> Acting:
-    """The unit loads that act at an instant, turned about the axis by an angle (rad)."""
+    """Return the unit loads that act at an instant, rotated about the axis by an angle (rad)."""
     out = []
     for load, both in loads.coefficients().items():
         c, s = math.cos(load.n * angle), math.sin(load.n * angle)
@@ -104,12 +104,14 @@ def acting_at(loads: Loads, instant: int, angle: float = 0.0) -> Acting:
 def pin_body(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], acting: Acting, fineness: HexSize
 ) -> PinBody:
-    """A pin clamped at surfaces (by name) under loads, as a body that can flow.
+    """Return a pin under loads as an elastic-plastic body.
 
+    clamps: the names of the clamped surfaces.
     acting: unit loads with phase and amount. Without clamps their small imbalance is closed as in
     fea.core.tractions.
 
-    Raises: SolveError for loads that nothing can balance.
+    Raises: SolveError for a pin with neither clamps nor connections, and for a body load on a
+    material without density.
     """
     sector = sector_of(acting)
     mesh = hexahedra(pin, fineness, sector.quarters)
@@ -127,7 +129,7 @@ def pin_body(
 
 
 def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
-    """Elements of 20 nodes with `points` quadrature points along each axis."""
+    """Return 20-node hexahedra with `points` quadrature points along each axis."""
     x, weight = _gauss(points)
     grid = np.stack(np.meshgrid(x, x, x, indexing="ij")).reshape(3, -1)
     weights = np.einsum("i,j,k->ijk", weight, weight, weight).ravel()
@@ -138,16 +140,17 @@ def hexahedral(nodes: Floats, numbers: Ints, points: int = 2) -> Elements:
 
 
 def refine(elements: Elements) -> RefinedElements:
-    """The same hexahedra with three instead of two quadrature points along each axis."""
+    """Return the same hexahedra with three instead of two quadrature points along each axis."""
     three = _gauss(3)[0]
     grid = np.stack(np.meshgrid(three, three, three, indexing="ij"), axis=-1).reshape(-1, 3)
     return RefinedElements(hexahedral(elements.nodes, elements.numbers, 3), reading(grid))
 
 
 def reading(local: Floats) -> Floats:
-    """The matrix (P, 8) that takes values at quadrature points to places in an element.
+    """Return the matrix (P, 8) that extrapolates values at the eight quadrature points of an
+    element to P places in it.
 
-    local: (P, 3) coordinates of the places, 0 to 1.
+    local: (P, 3) local coordinates of the places, 0 to 1.
     """
     two = _gauss(2)[0]
     right = (local - two[0]) / (two[1] - two[0])
@@ -156,29 +159,29 @@ def reading(local: Floats) -> Floats:
 
 
 def _gauss(points: int) -> tuple[Floats, Floats]:
-    """Gauss points and weights on the interval from 0 to 1."""
+    """Return the Gauss points and weights on the interval from 0 to 1."""
     x, weight = np.polynomial.legendre.leggauss(points)
     return (x + 1.0) / 2.0, weight / 2.0
 
 
 def _ties(mesh: HexMesh, sector: Sector) -> Ties:
-    """The ties of the nodes on the planes that bound a sector."""
+    """Return the ties of all nodes; those on the planes that bound a sector are constrained."""
     x, y, z = mesh.nodes.T
     near = 1e-9 * np.ptp(mesh.nodes)
     zero = np.zeros((len(x), 3), dtype=bool)
     unknown = np.arange(3 * len(x)).reshape(-1, 3)
     sign = np.ones((len(x), 3))
-    # On the mirror plane y = 0 nothing moves across it.
+    # Nodes on the mirror plane y = 0 stay in it.
     if sector.mirror:
         zero[np.abs(y) < near, 1] = True
-    # On x = 0 the half turn and the mirror together leave displacements along x alone.
+    # On x = 0 the half turn and the mirror together allow displacements along x only.
     if sector.odd and sector.mirror:
         zero[np.abs(x) < near, 1:] = True
     elif sector.odd:
         zero[np.hypot(x, y) < near, 2] = True
         cut = np.flatnonzero((np.abs(y) < near) & (np.abs(x) >= near))
-        # Nodes of the plane y = 0 at -x and x are images of each other by half a turn: pair them by
-        # r and z. Under the change of sign u_x and u_y are equal, u_z opposite.
+        # Nodes of the plane y = 0 at -x and x are images of each other under half a turn: pair them
+        # by r and z. With the change of sign, u_x and u_y are equal and u_z is opposite.
         left, right = cut[x[cut] < 0.0], cut[x[cut] > 0.0]
         order = [np.lexsort((np.round(np.abs(x[s]) / near / 10), np.round(z[s] / near / 10)))
                  for s in (left, right)]  # fmt: skip
@@ -190,7 +193,7 @@ def _ties(mesh: HexMesh, sector: Sector) -> Ties:
 
 
 def _clamped(pin: Pin, mesh: HexMesh, clamps: tuple[str, ...]) -> Ints:
-    """Numbers of the nodes on clamped surfaces."""
+    """Return the numbers of the nodes on clamped surfaces."""
     nodes = []
     for name in clamps:
         if name in ("start", "end"):
@@ -205,7 +208,7 @@ _OUTER_FACE_NODES = np.flatnonzero(np.asarray(ElementHexS2().doflocs)[:, 0] == 1
 
 
 def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
-    """Numbers of the cells with a face on a band."""
+    """Return the numbers of the cells with a face on a band."""
     band = pin.band(name)
     cells = mesh.outside[_segment(pin, name)]
     z = mesh.nodes[mesh.elements[cells], 2].mean(axis=1)
@@ -213,8 +216,10 @@ def _on(pin: Pin, mesh: HexMesh, name: str) -> Ints:
 
 
 def _segment(pin: Pin, name: str) -> int:
-    """Number of the segment on whose outer surface a band is; of a shoulder's face the thicker one,
-    all over which its force enters here.
+    """Return the number of the segment on whose outer surface a band lies.
+
+    The face of a shoulder belongs to the thicker segment, and its force here enters over the whole
+    outer surface of that segment.
     """
     band = pin.band(name)
     if band.name in pin.labels:
@@ -225,7 +230,7 @@ def _segment(pin: Pin, name: str) -> int:
 def nodal_forces(
     pin: Pin, rule: FlowRule, mesh: HexMesh, elements: Elements, acting: Acting
 ) -> Floats:
-    """Nodal forces (N, 3), N, of all loads."""
+    """Return the nodal forces (N, 3), N, of all loads."""
     out = _traction_forces(
         pin,
         mesh,
@@ -238,7 +243,8 @@ def nodal_forces(
 
 
 def _traction_forces(pin: Pin, mesh: HexMesh, tractions: Iterable[Acted]) -> Floats:
-    """Nodal forces (N, 3), N, of tractions; in contact there are thousands on a few bands."""
+    """Return the nodal forces (N, 3), N, of tractions."""
+    # Grouped by band, because in contact there are thousands of tractions on a few bands.
     out = np.zeros_like(mesh.nodes)
     for name, of_band in grouped((x[1].surface, x) for x in tractions).items():
         _push(out, pin, mesh, name, of_band)
@@ -246,7 +252,7 @@ def _traction_forces(pin: Pin, mesh: HexMesh, tractions: Iterable[Acted]) -> Flo
 
 
 def _push(out: Floats, pin: Pin, mesh: HexMesh, name: str, tractions: list[Acted]) -> None:
-    """Add the forces of tractions on a band to those (N, 3), N, of all nodes."""
+    """Add the forces of tractions on a band to the nodal forces `out` (N, 3), N."""
     nodes = mesh.elements[_on(pin, mesh, name)][:, _OUTER_FACE_NODES]
     g, weight = _gauss(3)
     # Quadrature on the outer faces of the cells: their shape functions, tangents and areas there.
@@ -257,7 +263,8 @@ def _push(out: Floats, pin: Pin, mesh: HexMesh, name: str, tractions: list[Acted
     x = np.einsum("kq,mka->mqa", shapes, corners)
     tangents = np.einsum("kaq,mkb->amqb", slopes[:, 1:], corners)
     area = np.linalg.norm(np.cross(*tangents), axis=2) * np.outer(weight, weight).ravel()
-    # The force of a shoulder's face is of a cylinder with its area, which is thinner.
+    # The traction of a shoulder's face refers to a cylinder with the area of the face, which has a
+    # smaller radius.
     area *= pin.band(name).radius / pin.bands[_segment(pin, name)].radius
     whole = np.zeros_like(x)
     for amount, t, n, phase in tractions:
@@ -266,7 +273,7 @@ def _push(out: Floats, pin: Pin, mesh: HexMesh, name: str, tractions: list[Acted
 
 
 def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
-    """Nodal forces (N, 3), N, of one m/s^2 along an axis.
+    """Return the nodal forces (N, 3), N, of an acceleration of 1 m/s^2 along an axis.
 
     Raises: SolveError for a material without density.
     """
@@ -286,19 +293,20 @@ def _body_force(rule: FlowRule, elements: Elements, axis: int) -> Floats:
 
 
 def _balanced(pin: Pin, mesh: HexMesh, ties: Ties, force: Floats) -> tuple[Floats, Ties]:
-    """Forces with closing tractions that leave no resultant, and ties without rigid motions.
+    """Return the forces with closing tractions that cancel their resultant, and ties without rigid
+    motions.
 
-    ties: of the sector; its remaining rigid motions are found and one unknown is fixed for each.
+    ties: of the sector. One unknown is fixed for each rigid motion that they allow.
     """
     whole = ties.matrix
     whole_turn = np.concatenate([mesh.nodes, mesh.nodes * [-1.0, -1.0, 1.0]])  # about the axis
     modes = rigid_modes(whole_turn - whole_turn.mean(axis=0))[: mesh.nodes.size]
     counts = np.asarray(abs(whole).sum(axis=0)).ravel()
-    # Rigid motions that the symmetries of the sector allow.
+    # Find the rigid motions that the symmetries of the sector allow.
     free = (whole.T @ modes) / counts[:, None]
     possible = np.abs(whole @ free - modes).max(axis=0) < 1e-9
     free = free[:, possible]
-    # Closing tractions whose amounts cancel the resultant in each of these motions.
+    # Find the amounts of the closing tractions that cancel the resultant in each of these motions.
     closing = [
         _traction_forces(pin, mesh, ((1.0, t, n, phase) for t in everywhere))
         for n, phase in ((1, 0), (1, 1), (0, 0), (0, 1))

@@ -1,4 +1,4 @@
-"""Results of a run about the limit load of a pin in a case."""
+"""Results of a run for the limit load of a pin in a load case, and of its lugs."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pinbase.dimensions import Floats, Force, Length, Lengths, Stresses, Time
 class PlasticMesh:
     """One mesh of the solid.
 
-    lower: the load factor that equilibrium reached, of which the lower bound is made.
+    lower: the load factor reached in equilibrium, from which the lower bound is computed.
     upper: the upper bound.
-    volume: change of volume over the equivalent strain of its mechanism.
-    charge: what that adds to the upper bound.
-    steps, iterations: of the loads.
+    volume: mean volume change of the mechanism relative to its equivalent strain.
+    charge: the amount that the volume change adds to the upper bound.
+    steps, iterations: the numbers of load steps and of Newton iterations.
     """
 
     unknowns: int
@@ -33,9 +33,9 @@ class PlasticMesh:
 
 @dataclass(frozen=True)
 class LoadCurve:
-    """Load factors (S,) from zero on and the largest displacement at them.
+    """The load factors (S,), starting at zero, and the largest displacement (S,) at each.
 
-    permanent: (S,) the part of it that remains when the loads are removed.
+    permanent: (S,) the part of the displacement that remains when the loads are removed.
     """
 
     factor: Floats
@@ -45,13 +45,14 @@ class LoadCurve:
 
 @dataclass(frozen=True)
 class FlowField:
-    """The pin, or the modelled part of its turn, when its limit load is reached, at a load factor.
+    """The pin, or its modelled sector, in the last state in equilibrium, at the limit load.
 
     points: (N, 3) in pin axes.
-    cells: (M, 20) in the order of VTK.
+    cells: (M, 20) node numbers in VTK's order.
     displacement: (N, 3).
-    plastic_strain: (N,) equivalent.
+    plastic_strain: (N,) equivalent plastic strain.
     von_mises: (N,).
+    factor: the load factor of the state.
     """
 
     points: Lengths
@@ -64,17 +65,19 @@ class FlowField:
 
 @dataclass(frozen=True)
 class LimitLoad:
-    """The load factor at which a pin collapses, between lower and upper.
+    """The load factor at which a pin collapses; it lies between `lower` and `upper`.
 
-    All loads of the case grow in proportion, at the instant (`time`, s; None without a motion) at
-    which the pin, as a beam, collapses at the least factor.
-    method: beam or solid; "none" without an answer, with the reason in `note`.
-    carries: whether the pin carries its loads (factor 1) without collapse; None where that is open.
-    permanent_set: the part of the largest displacement that remains after the loads reached the
-    factor permanent_at and were removed.
+    All loads of the case grow in proportion. The instant (`time`, s; None without a motion) is the
+    one at which the pin, as a beam, collapses at the smallest factor.
+    method: beam or solid; "none" without a result, with the reason in `note`.
+    carries: whether the pin carries its loads (factor 1) without collapse; None where this is not
+    decided.
+    permanent_set: the part of the largest displacement that remains after the loads have reached
+    the factor permanent_at and have been removed.
+    seconds: wall-clock time.
     curve, flow: of the finest mesh.
-    stopped: there is no answer because it would have taken longer than a limit load may that nobody
-    asked for.
+    stopped: there is no result, because it would have taken longer than allowed for a limit load
+    that the user has not requested.
     """
 
     method: Literal["beam", "solid", "none"]
@@ -95,11 +98,13 @@ class LimitLoad:
 
 @dataclass(frozen=True)
 class LugCollapse:
-    """The limit load of a lug, N, that its pin pulls along the shank, between lower and upper.
+    """The limit load, N, of a lug that its pin pulls along the shank; it lies between `lower` and
+    `upper`.
 
-    needs: what is missing where there is none. ultimate: the load at which it breaks, of a material
-    with a failure strain; breaks_by: what ends it, or what is missing. ultimate_ends: both at the
-    lower and upper end of the yield strength, where that has a range.
+    needs: what is missing if there is no limit load. ultimate: the load at which the lug breaks, if
+    the material has a failure strain. breaks_by: what ends the rise of the load, or what is
+    missing. ultimate_ends: ultimate and breaks_by at the lower and at the upper end of the yield
+    strength, if the strength has a range.
     """
 
     connection: str

@@ -1,7 +1,7 @@
-"""The limit load of a pin by the smallest model that decides whether it carries its loads.
+"""The limit load of a pin by the smallest model that decides whether the pin carries its loads.
 
-beam     hinges and slip, if even the model's error leaves no doubt      (assess.plastic.hinge)
-solid    elastic-plastic, on two meshes, a third if they differ much    (assess.plastic.limit_load)
+beam     hinges and slip, if they decide beyond the error of the model   (assess.plastic.hinge)
+solid    elastic-plastic, two meshes, a third if the bracket is wide     (assess.plastic.limit_load)
 """
 
 from __future__ import annotations
@@ -32,12 +32,13 @@ from pinbase.arrays import Floats
 Rung = Literal["auto", "solid"]
 
 MESH_SIZES = HexSize(2, 0.5), HexSize(4, 0.25), HexSize(6, 1.0 / 6.0)
-MAX_BRACKET = 0.05 + EQUILIBRIUM_ALLOWANCE  # width of a bracket over its middle
-MAX_SOLID_UNKNOWNS = 60_000  # of the solid: a minute or two
-# Rough estimates of time, chosen by judgement.
-SECONDS_PER_UNKNOWN = 3e-3  # s of the first two meshes per unknown of the first
-TIME_EXPONENT = 1.5  # of the time of a mesh over its unknowns, at least
-# Of the limit: the permanent set is reported after this load at most; chosen by judgement.
+MAX_BRACKET = 0.05 + EQUILIBRIUM_ALLOWANCE  # width of a bracket relative to its middle
+MAX_SOLID_UNKNOWNS = 60_000  # of the solid; takes a minute or two
+# Rough estimates of processor time, chosen by judgement.
+SECONDS_PER_UNKNOWN = 3e-3  # time of the first two meshes, s, per unknown of the first
+TIME_EXPONENT = 1.5  # the time of a mesh grows at least with this power of its unknowns
+# Largest load after which the permanent set is reported, relative to the limit load; chosen by
+# judgement.
 MAX_SET_LOAD_SHARE = 0.95
 TETRAHEDRA_NOTE = (
     "only for pins of a profile without holes and flats: others need tetrahedra, which lock when "
@@ -59,13 +60,13 @@ def limit_load(
     memory: float | None = None,
     seconds: float = math.inf,
 ) -> LimitLoad:
-    """The limit load of a pin under the loads of one instant.
+    """Return the limit load of a pin under the loads of one instant.
 
-    clamps: surfaces by name.
-    rung: "solid" even if the beam decides.
-    memory: MB that may be used.
-    seconds: of processor time that it may take; beyond that there is no answer, never a part of
-    one.
+    clamps: the names of the clamped surfaces.
+    rung: "solid" to solve the solid even if the beam decides.
+    memory: memory that may be used, MB; None for no limit.
+    seconds: processor time that may be used; if it does not suffice, there is no result, not even a
+    partial one.
 
     Raises: ArgumentError for a material without yield strength; SolveError.
     """
@@ -76,7 +77,8 @@ def limit_load(
         return LimitLoad("none", note=TETRAHEDRA_NOTE)
     if not profile.stepped:
         return LimitLoad("none", note="only for pins of cylinders, without cones or rounded edges")
-    # First the beam, which costs little; the solid only where its error leaves the question open.
+    # Try the beam first, which costs little; solve the solid only if the beam's error leaves the
+    # question open.
     bounds = of_beam(profile, material, clamps, loads)
     if bounds is not None and rung == "auto":
         carries = decided(bounds)
@@ -103,7 +105,7 @@ def limit_load(
 
 
 def decided(bounds: BeamBounds) -> bool | None:
-    """Whether a beam carries its loads at the first instant; None if its error leaves that open."""
+    """Whether a beam carries its loads at the first instant; None if its error leaves it open."""
     if bounds.lower[0] > 1.0 + HINGE_ERROR:
         return True
     return False if bounds.upper[0] < 1.0 - HINGE_ERROR else None
@@ -112,7 +114,7 @@ def decided(bounds: BeamBounds) -> bool | None:
 def of_beam(
     pin: Pin, material: Material, clamps: tuple[str, ...], loads: PinLoads
 ) -> BeamBounds | None:
-    """The beam's bounds; None for contact pressures on rings, which the beam does not take."""
+    """Return the beam's bounds; None for contact pressures on rings, which a beam cannot carry."""
     if any(load.parts for load in loads.coefficients()):
         return None
     return beam_bounds(pin, material, clamps, loads)
@@ -125,13 +127,15 @@ def _meshes(
     loads: PinLoads,
     most: tuple[float | None, Budget],
 ) -> tuple[list[MeshBracket], PinBody | None, str]:
-    """The limit loads on the finest affordable meshes (two at least), the last body, a note.
+    """Return the limit load on each mesh, the body on the last mesh, and a note.
 
-    most: memory, MB, and time. The note says why there are no more meshes.
+    Meshes are refined until the bracket of the last two is narrow enough or the next mesh is too
+    large; in the second case the note says so, and there may be fewer than two meshes.
+    most: memory, MB, and the budget of time.
 
-    Raises: SolveError; OutOfTimeError, also before a mesh that would take longer than is left: the
-    first two are judged by the number of unknowns, which is the same on every computer, another one
-    by the time of the one before it.
+    Raises: SolveError; OutOfTimeError, also before a mesh that would take longer than the remaining
+    budget. The time of the first two meshes is estimated from the number of unknowns, which is the
+    same on every computer; that of a later mesh from the time of the mesh before it.
     """
     memory, budget = most
     meshes: list[MeshBracket] = []
@@ -160,7 +164,7 @@ def _meshes(
 def body_on(
     pin: Pin, rule: FlowRule, clamps: tuple[str, ...], loads: PinLoads, size: HexSize
 ) -> PinBody:
-    """The pin on a mesh, under the loads of the first instant.
+    """Return the pin on a mesh, under the loads of the first instant.
 
     Raises: SolveError.
     """
@@ -175,7 +179,9 @@ def narrow_enough(lower: float, upper: float) -> bool:
 def _of_solid(
     meshes: list[MeshBracket], bounds: BeamBounds | None, rule: FlowRule, note: str
 ) -> LimitLoad:
-    """The result from the meshes of the solid and, where it is lower, the beam's bound by slip."""
+    """Return the result of the meshes of the solid. If the beam's bound by slip is lower than the
+    upper bound of the solid, the slip bound replaces it.
+    """
     lower, upper = bracket(meshes)
     finest = meshes[-1]
     if bounds is not None and bounds.slip[0] < upper:
@@ -208,9 +214,9 @@ def _of_solid(
 
 
 def flow_field(pin: PinBody, state: State, angle: float) -> FlowField:
-    """The flow in a state, in the pin's axes.
+    """Return the flow field of a state in the pin's axes.
 
-    angle: rad, by which the state's axes are turned from them.
+    angle: angle by which the axes of the state are rotated from the pin's axes, rad.
     """
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
@@ -225,7 +231,10 @@ def flow_field(pin: PinBody, state: State, angle: float) -> FlowField:
 
 
 def _at_nodes(pin: PinBody, values: Floats) -> Floats:
-    """Nodal means (N,) of what the elements' values (M, 8) at quadrature points extrapolate to."""
+    """Return nodal values (N,): the mean of the values that the elements at a node extrapolate.
+
+    values: (M, 8) at the quadrature points.
+    """
     at_corners = values @ reading(np.asarray(ElementHexS2().doflocs)).T
     numbers = pin.mesh.elements.ravel()
     total = np.bincount(numbers, at_corners.ravel(), minlength=len(pin.mesh.nodes))

@@ -1,1 +1,1 @@
-"""Margins of safety: checks by formula and of the model's stress against strengths."""
+"""Margins of safety: checks by formula, and of the model's stress against strengths."""

@@ -1,4 +1,4 @@
-"""The bending moment of the formulas next to that of the joint model, at the same instant."""
+"""The bending moment by the formulas, compared with that of the joint model at the same instant."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from fea.support.records import Couple
 from geometry import Band, Pin
 from pinbase.dimensions import Time
 
-MAX_OPPOSED_COSINE = -0.99  # cosine between the forces of outer lugs and of the middle one
+MAX_OPPOSED_COSINE = -0.99  # largest cosine between the force of an outer and the middle lug
 DOUBLE_SHEAR = "double shear"
-LAYOUT_TOLERANCE = 0.05  # by which outer lugs may differ in force, width and gap
+LAYOUT_TOLERANCE = 0.05  # relative difference of the outer lugs in force, width and gap
 
 
 @dataclass(frozen=True)
 class BendingArms:
-    """The largest moments along a pin at the governing instant.
+    """The largest bending moments along a pin at the governing instant.
 
-    They are those with even and with concentrated loads on the bands, and by the joint model
-    ("contact", "foundation"), if one supports the pin.
-    layout: of the bands.
+    even, concentrated: with evenly distributed and with concentrated loads on the bands.
+    joint: by the joint model `model` ("contact", "foundation"), if the pin is supported by one.
+    layout: the layout of the bands, in words.
     """
 
     pin: str
@@ -38,7 +38,10 @@ class BendingArms:
 
 
 def bending_arms(s: Situation, joint: Couple | None, model: str) -> BendingArms:
-    """The bending moments of a situation at one instant."""
+    """Return the bending moments of a situation with a single instant.
+
+    joint: the moment by the joint model; None if there is none. model: the name of that model.
+    """
     even, concentrated = section_forces(s)
     return BendingArms(
         s.pin.name,
@@ -60,7 +63,9 @@ def in_double_shear(s: Situation) -> bool:
 
 
 def sections_between(pin: Pin, first: Band, last: Band) -> set[Circle]:
-    """The sections of a pin from one band to another, both included; of a cone the thinnest."""
+    """Return the sections of a pin from one band to another, both included; the thinnest section of
+    a cone.
+    """
     stations = zip(pin.segments, pin.stations, pin.stations[1:], strict=False)
     return {
         thinnest_section(segment, 0.0, segment.length)
@@ -70,15 +75,15 @@ def sections_between(pin: Pin, first: Band, last: Band) -> set[Circle]:
 
 
 def outer_and_gap(first: Band, middle: Band, last: Band) -> tuple[float, float]:
-    """The thickness of the thicker outer lug and the wider gap in double shear, m."""
+    """Return the thickness of the thicker outer lug and the wider gap in double shear, m."""
     gap = max(middle.z0 - first.z1, last.z0 - middle.z1)
     return max(first.length, last.length), gap
 
 
 def layout(s: Situation, instant: int = 0) -> str:
-    """The layout of the bands at an instant, by its number.
+    """Return the layout of the bands at an instant, in words. instant: its number.
 
-    It is DOUBLE_SHEAR where the even moment is that of EN 1993-1-8, figure 3.11.
+    The layout is DOUBLE_SHEAR where the moment with even loads is that of EN 1993-1-8, figure 3.11.
     """
     if s.clamps:
         return "clamped"
@@ -101,7 +106,7 @@ def layout(s: Situation, instant: int = 0) -> str:
 
 
 def _opposed(force: np.ndarray) -> bool:
-    """Return whether the middle one of three forces (3, 2) opposes both others."""
+    """Whether the middle one of three forces (3, 2) opposes both others."""
     size = np.hypot(*force.T)
     if not size.all():
         return False

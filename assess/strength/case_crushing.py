@@ -1,7 +1,7 @@
 """Crushing of a hardened case under the pressure of lugs: the stress in the core beneath it.
 
-No standard has it. The formula is that of an elastic half-plane under the pressure that contact
-has found (fea.support.contact.case_crushing), against first yield of the core.
+No standard has this check. The formula is that of an elastic half-plane under the pressure of the
+contact solution (fea.support.contact.case_crushing), compared with first yield of the core.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from assess.situation import Situation
     omits="Not covered: bending of the pin, which the von Mises stress has; the edges of lugs.",
 )
 def crushed_case(text: CheckText, s: Situation) -> list[Margin]:
-    """The margin of the core's yield strength beneath the pressure; only of hardened pins in
-    contact. The safety factor that the study requires replaces a smaller factor at limit load.
+    """Return the margin against yield of the core beneath the pressure, for hardened pins in
+    contact only. A larger safety factor that the study requires replaces the limit load factor.
     """
     places = s.row.peak.places if s.row else None
     crushing = places.contact.crushing if places and places.contact else None

@@ -1,10 +1,11 @@
 """The limit load of a pin as a margin: no collapse at ultimate load.
 
-The allowable is the lower end of the bracket of the load factor (assess.plastic), the demand one:
-all loads of the case at the instant that is nearest to collapse.
+The allowable is the lower end of the bracket of the load factor (assess.plastic). The demand is 1:
+all loads of the case, at the instant nearest to collapse.
 
-Over the range of the joint the demand is taken to grow as the elastic stress, which grows more than
-the limit load falls: pressure at the edge of a lug does not make the whole section yield.
+Over the range of the joint the demand is assumed to grow like the elastic stress. This is
+conservative: the limit load falls less than that, because a pressure peak at the edge of a lug does
+not make the whole section yield.
 
 Source: 14 CFR 25.305(b) (no failure at ultimate load).
 """
@@ -23,7 +24,7 @@ COLLAPSE_METHOD = "limit load, collapse"
 @check(COLLAPSE_METHOD, "14 CFR 25.305", kind="collapse", takes="results", level="ultimate",
        dimension=RATIO_DIMENSION)  # fmt: skip
 def collapse(text: CheckText, s: Situation) -> list[Margin]:
-    """The margin against collapse at ultimate load; none where no limit load was requested."""
+    """Return the margin against collapse at ultimate load; none if no limit load was requested."""
     limit = s.row.limit_load if s.row else None
     if s.row is None or limit is None:
         return []

@@ -5,20 +5,21 @@
     bending               M_Rd = 1.5 W_el f_yp / gamma_M0, at most W_pl f_yp / gamma_M0
     shear and bending     (M_Ed / M_Rd)^2 + (F_v,Ed / F_v,Rd)^2 <= 1
 
-and where a pin is meant to be replaced, at the loads of service,
+and, for a pin that is meant to be replaced, at service loads,
 
     bearing               F_b,Rd,ser = 0.6 t d f_y / gamma_M6,ser
     bending               M_Rd,ser = 0.8 W_el f_yp / gamma_M6,ser
     contact               sigma_h,Ed = 0.591 sqrt(E F (d0 - d) / (d^2 t)) <= 2.5 f_y / gamma_M6,ser
 
-1.5 W_el is more than the fully plastic W_pl of a hollow pin whose bore is above 0.63 of its
-diameter, by 4.5 % at 0.75; no section has more than W_pl (EN 1993-1-1, 6.2.5).
+1.5 W_el exceeds the fully plastic W_pl of a hollow pin whose bore is above 0.63 of its diameter, by
+4.5 % at 0.75; no section resists more than W_pl (EN 1993-1-1, 6.2.5).
 
-The first group is checked at ultimate, the second at limit load. f_y is the lower of the pin's and
-the lug's. For the interaction the largest moment and the largest shear of an instant are taken
-together, wherever they are; its utilisation is the root of the sum, which rises as the loads do.
-Contact stress rises as the root of the force, and so does the factor on it. The partial factors
-are the recommended ones, or those of a national annex that the study states.
+The first group is checked at ultimate load, the second at limit load. f_y is the lower yield
+strength of pin and lug. The interaction combines the largest moment and the largest shear of an
+instant, even if they act in different sections. Its utilisation is the root of the sum, which is
+proportional to the loads. The contact stress is proportional to the root of the force, so the root
+of the load factor multiplies it. The partial factors are the recommended ones, or those of a
+national annex that the study states.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ _by_bands = partial(check, clause=_TABLE, kind="clause", takes="statics", omits=
 def shear_resistance(
     area: Floats | float, ultimate: float, partial: PartialFactors = RECOMMENDED
 ) -> Floats | float:
-    """The shear resistance F_v,Rd, N, of a shear plane.
+    """Return the shear resistance F_v,Rd, N, of one shear plane.
 
     area: m^2.
     ultimate: ultimate strength, Pa.
@@ -65,7 +66,7 @@ def bearing_resistance(
     *,
     replaceable: bool = False,
 ) -> Floats:
-    """The bearing resistance F_b,Rd, N, or F_b,Rd,ser of a replaceable pin.
+    """Return the bearing resistance F_b,Rd, N, or F_b,Rd,ser of a replaceable pin.
 
     thickness, diameter: m.
     strength: the lower yield strength of pin and lug, Pa.
@@ -82,7 +83,7 @@ def bending_resistance(
     plastic: Floats | float = math.inf,
     replaceable: bool = False,
 ) -> Floats | float:
-    """The bending resistance M_Rd, N m, or M_Rd,ser of a replaceable pin.
+    """Return the bending resistance M_Rd, N m, or M_Rd,ser of a replaceable pin.
 
     modulus, plastic: elastic and plastic section modulus, m^3.
     strength: yield strength, Pa.
@@ -94,7 +95,7 @@ def bending_resistance(
 
 @dataclass(frozen=True)
 class PinInHole:
-    """A pin of `diameter` in a hole of a plate of `thickness`, m; modulus: E, Pa."""
+    """A pin in the hole of a plate; diameters and thickness in m; modulus: E, Pa."""
 
     diameter: Floats | float
     hole: Floats | float
@@ -103,7 +104,7 @@ class PinInHole:
 
 
 def contact_stress(force: Floats | float, at: PinInHole) -> Floats:
-    """The contact stress sigma_h,Ed, Pa, of a force, N."""
+    """Return the contact stress sigma_h,Ed, Pa, of a force, N."""
     play = np.asarray(at.hole) - at.diameter
     area = np.asarray(at.diameter) ** 2 * at.thickness
     return np.asarray(0.591 * np.sqrt(at.modulus * force * play / area))
@@ -269,7 +270,7 @@ def _bending(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 
 def _lower_strengths(s: Situation) -> tuple[list[float], list[str]]:
-    """The lower yield strength of pin and lug at each band, and the keys that are missing."""
+    """Return the lower yield strength of pin and lug at each band, and the missing keys."""
     strengths, lacking = [], []
     for name in s.loads.surfaces:
         lug = s.lug(name)
@@ -308,9 +309,9 @@ def _bearing(text: CheckText, s: Situation, *, replaceable: bool = False) -> lis
 
 
 def _hole(s: Situation, name: str) -> tuple[float, float, float, float]:
-    """The diameters of pin and hole, the thickness, m, and Young's modulus, Pa.
+    """Return the diameters of pin and hole and the thickness, m, and Young's modulus, Pa.
 
-    The modulus is the harmonic mean of pin and lug, since these are in series.
+    The modulus is the harmonic mean of those of pin and lug, which deform in series.
     """
     lug, band = s.lug(name), s.pin.band(name)
     assert lug is not None

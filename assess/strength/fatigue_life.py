@@ -1,7 +1,8 @@
-"""The damage of a pin under the study's spectrum as a margin: damage 1 within the life required.
+"""The fatigue damage of a pin under the study's spectrum as a margin.
 
-The demand is the damage per unit of the spectrum (a flight, say) at the worst critical point, the
-allowable 1 / life. Load factors do not apply: a spectrum is of service loads.
+The demand is the damage per unit of the spectrum (for example per flight) at the worst critical
+point; the allowable is 1 / required life. Load factors do not apply, because a spectrum consists of
+service loads.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ FATIGUE_LIFE = "fatigue life"
 
 @check(FATIGUE_LIFE, "", kind="fatigue", takes="results", scope="pin", dimension=RATIO_DIMENSION)
 def fatigue_life(text: CheckText, s: Situation) -> list[Margin]:
-    """The damage at the worst point of a pin against that of the life required."""
+    """Return the margin of the damage at the worst point of a pin, for the required life."""
     fatigue = s.fatigue
     if fatigue is None or not fatigue.life:
         return []

@@ -1,18 +1,20 @@
 """Hand checks of a pin: shear, bearing and bending.
 
-Nominal stresses of the textbooks, each at the place and the instant where it is largest. With
-their strengths: yield in bending, yield over sqrt(3) in shear (von Mises), and yield in bearing.
-The last is a convention, and a safe one: a pin whose neighbour holds it in bears more before it is
-marked. At rupture, shear, bearing and ultimate strengths of the study.
+These are the nominal stresses of textbooks, each at the place and instant where it is largest. They
+are compared with yield in bending, yield over sqrt(3) in shear (von Mises), and yield in bearing.
+Yield in bearing is a convention, and a safe one: a pin that is confined by its neighbours bears a
+higher pressure before it is marked. Against rupture they are compared with the study's shear and
+bearing strengths.
 
-Shear and bending take the section forces of a beam (assess.strength.section_forces). The moment in
-double shear, for a force F on the middle lug, is
+Shear and bending take the section forces of a beam (assess.strength.section_forces). In double
+shear, with a force F on the middle lug, the moment is
 
     even             F / 2 (a / 2 + c + b / 4)
     concentrated     F / 2 (a / 2 + c + b / 2)
 
-with a the outer lugs' thickness, b the middle one's, c the gap. Where the joint was solved its own
-section forces have the couples that lugs carry, too, which neither of both knows.
+where a is the thickness of the outer lugs, b that of the middle lug, and c the gap. If the joint
+was solved, its section forces also include the couples that the lugs carry, which both formulas
+omit.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, 3-10 and 3-11
 (bending, transverse shear), problem 3-40 (concentrated forces), 5-5 (distortion energy), 8-12
@@ -67,18 +69,18 @@ NOMINAL_OMITS = (
     "stress of the model has."
 )
 BEARING_OMITS = "Not covered: uneven pressure along the band and its edges, wear."
-MAX_HALF_DIFFERENCE = 0.1  # part of a band's load by which its two sides may differ in double shear
+MAX_HALF_DIFFERENCE = 0.1  # difference of a band's two sides in double shear, over its load
 
 
 def shear_yield(material: Material) -> float | None:
-    """The yield strength in shear by von Mises, Pa; None without a yield strength."""
+    """Return the yield strength in shear by von Mises, Pa; None without a yield strength."""
     return material.yield_strength / math.sqrt(3.0) if material.yield_strength else None
 
 
 @check("single shear, mean", SHIGLEY_JOINTS, kind="hand", takes="section forces",
        omits=NOMINAL_OMITS)  # fmt: skip
 def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The mean shear stress V / A of the section where it is largest."""
+    """Return the margins of the mean shear stress V / A in the section where it is largest."""
     if not s.chosen:
         return []
     stress = s.forces.mean_shear()
@@ -88,7 +90,9 @@ def mean_shear(text: CheckText, s: Situation) -> list[Margin]:
 @check("single shear, at the neutral axis", f"{SHIGLEY}, 3-11", kind="hand",
        takes="section forces", omits=NOMINAL_OMITS)  # fmt: skip
 def neutral_axis_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The shear stress at the neutral axis, V Q / (I t), which is 4 V / (3 A) of a solid pin."""
+    """Return the margins of the shear stress at the neutral axis, V Q / (I t), which is
+    4 V / (3 A) in a solid pin.
+    """
     if not s.chosen:
         return []
     stress = s.forces.neutral_axis_shear()
@@ -98,8 +102,8 @@ def neutral_axis_shear(text: CheckText, s: Situation) -> list[Margin]:
 
 @check("double shear, mean", SHIGLEY_JOINTS, kind="hand", takes="statics", omits=NOMINAL_OMITS)
 def double_shear(text: CheckText, s: Situation) -> list[Margin]:
-    """The mean shear stress F / (2 A) at every band whose load, when it is largest, goes half to
-    each side.
+    """Return the margins of the mean shear stress F / (2 A) at every band in double shear: half of
+    its load, when the load is largest, goes to each side.
     """
     loads = s.on_bands
     forces = stepped_beam(s.pin, s.material, acting(loads), s.clamps)
@@ -132,7 +136,9 @@ def double_shear(text: CheckText, s: Situation) -> list[Margin]:
 
 @check("bearing", BEARING_SOURCE, kind="hand", takes="statics", omits=BEARING_OMITS)
 def bearing(text: CheckText, s: Situation) -> list[Margin]:
-    """The force across every loaded band over its projected area, F / (d L)."""
+    """Return the margins of the transverse force on every loaded band over its projected area,
+    F / (d L).
+    """
     loads, material, margins = s.on_bands, s.material, list[Margin]()
     for i, name in enumerate(loads.surfaces):
         band = s.pin.band(name)
@@ -173,7 +179,7 @@ def _along(
     formula: str,
     ruptures: Rupture | None = None,
 ) -> list[Margin]:
-    """The margins of a stress that follows from the section forces."""
+    """Return the margins of a nominal stress that follows from the section forces."""
     place, basis = WorstPlace(stress.at, stress.z, stress.time), s.forces.basis
     resists, power = {BENDING_FORMULA: ("modulus", 3.0), "V / A": ("area", 2.0)}.get(
         formula, ("axis_area", 2.0)
@@ -186,7 +192,7 @@ def _along(
 
 
 def _shown(stress: NominalStress, formula: str) -> Work:
-    """The work of a nominal stress in the worst section."""
+    """Return the work of a nominal stress in the worst section."""
     section, value = stress.section, stress.stress
     if formula == BENDING_FORMULA:
         return work(

@@ -1,9 +1,9 @@
-"""The stress of lugs as margins: the largest von Mises stress about the bore against yield and
-rupture, with its error (fea.lug). The safety factor that the study requires of the pin is required
-of its lugs as well.
+"""Margins of the stress of lugs: the largest von Mises stress at the bore with its error (fea.lug),
+against yield and rupture. The safety factor that the study requires of the pin is also required of
+its lugs.
 
-Where the pin presses on the bore the stress is contact's: beyond yield it flattens, which bearing
-checks judge. It is there for comparison.
+Where the pin presses on the bore, the stress is a contact stress. Beyond yield it levels off; the
+bearing checks judge it. Its margin is therefore for comparison only.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ METHOD = "lug, von Mises stress at the bore"
 
 @check(METHOD, CLAUSE, kind="model", takes="results")
 def lug_stress(text: CheckText, s: Situation) -> list[Margin]:
-    """The margin of every wall of the lugs whose shank is known; for others, what they lack."""
+    """Return the margins of every wall of the lugs whose shank is known; for the other lugs, what
+    is missing.
+    """
     by_name = {lug.connection: lug for lug in s.lugs}
     margins = [
         margin
@@ -60,5 +62,5 @@ def _margins(text: CheckText, s: Situation, stress: LugStress, lug: Lug) -> list
 
 
 def _material(stress: LugStress, lug: Lug) -> Material:
-    """The material of a wall of a lug."""
+    """Return the material of a wall of a lug."""
     return lug.bearing if stress.wall in ("bore", "bushing") else lug.material

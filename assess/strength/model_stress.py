@@ -1,8 +1,8 @@
 """The model's maximum von Mises stress as margins: yield at limit load, rupture at ultimate load.
 
-The demand is the upper end of the maximum: with its error, or of a singular row the upper end of
-its interval. Past yield a linear stress is larger than the true one, so the second is cautious for
-a ductile material.
+The demand is the upper end of the maximum: the maximum with its error or, for a singular row, the
+upper end of its interval. Beyond yield the linear stress exceeds the true one, so the margin
+against rupture is conservative for a ductile material.
 
 Source: 14 CFR 25.305 (no detrimental permanent deformation at limit load, no failure at ultimate).
 """
@@ -22,9 +22,9 @@ YIELD_METHOD, RUPTURE_METHOD = "von Mises stress, yield", "von Mises stress, rup
 
 @check(YIELD_METHOD, CLAUSE, kind="model", takes="results")
 def model_yield(text: CheckText, s: Situation) -> list[Margin]:
-    """The margin against yield at limit load.
+    """Return the margin against yield at limit load.
 
-    The safety factor that the study requires replaces a smaller factor at limit load.
+    A larger safety factor that the study requires replaces the limit load factor.
     """
     if s.row is None:
         return []
@@ -35,14 +35,15 @@ def model_yield(text: CheckText, s: Situation) -> list[Margin]:
 
 @check(RUPTURE_METHOD, CLAUSE, kind="model", takes="results", level="ultimate")
 def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
-    """The margin against rupture at ultimate load."""
+    """Return the margin against rupture at ultimate load."""
     if s.row is None:
         return []
     margin = _margin(text, s, s.row.peak, "ultimate", s.material.ultimate_strength)
     places = s.row.peak.places
     if margin.demand is None or places is None or not places.hardened:
         return [margin]
-    # Yield governs where the factor is least, rupture where stress is largest.
+    # For yield the part with the lowest factor governs, for rupture the part with the largest
+    # stress.
     largest = max(part.max_von_mises + part.error_estimate for part in places.hardened)
     return [replace(margin, demand=max(margin.demand, largest))]
 
@@ -50,9 +51,9 @@ def model_rupture(text: CheckText, s: Situation) -> list[Margin]:
 def _margin(
     text: CheckText, s: Situation, peak: Maximum, which: str, strength: float | None
 ) -> Margin:
-    """The margin of the peak's upper end against a strength.
+    """Return the margin of the peak's upper end against a strength.
 
-    which: the strength, as a study has it.
+    which: the name of the strength in a study, "yield" or "ultimate".
     """
     if strength is None:
         return text.lacks(s, strength_key(s.material.name, which))

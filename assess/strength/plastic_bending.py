@@ -2,19 +2,21 @@
 
     M_pl = W_pl f_y       V_pl = A_v f_y / sqrt(3)
 
-W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is the shear area 2 A /
-pi of a circular hollow section, or that at which V Q / (I t) reaches yield, which is safe, too, and
-larger for thick ones: 3 A / 4 if solid. With a hardened surface M_pl is the sum of the moments of
-case and core, and V_pl that of the core's strength.
+W_pl is exact for a perfectly plastic section (fea.beam.round_section). A_v is the larger of two
+areas: the shear area 2 A / pi of a circular hollow section, and the area at which V Q / (I t)
+reaches yield. The second is also safe, and is larger for thick walls: 3 A / 4 for a solid pin. With
+a hardened surface, M_pl is the sum of the moments of case and core, and V_pl follows from the
+core's strength.
 
-Both together: (M / M_pl)^2 + (V / V_pl)^2 <= 1 in every
-section, whose root is the utilisation, at ultimate load with the yield strength: a hinge is no
-permissible state at limit load. Shear at one stress tau everywhere leaves sqrt(f_y^2 - 3 tau^2) for
-bending, which gives this circle. Axial force and torque are not in it: assess.plastic.hinge has
-them.
+The interaction (M / M_pl)^2 + (V / V_pl)^2 <= 1 is checked in every section; the root of its left
+side is the utilisation. It is checked at ultimate load with the yield strength, because a plastic
+hinge is not permitted at limit load. The circle follows from a uniform shear stress tau, which
+leaves sqrt(f_y^2 - 3 tau^2) for bending. Axial force and torque are not included;
+assess.plastic.hinge includes them.
 
-This is a rule of pinstress and of no standard. EN 1993-1-1:2005 has shear alone in 6.2.6, bending
-with shear in 6.2.8, both with axial force in 6.2.9 and 6.2.10 (assess.clauses.eurocode_sections).
+This is a rule of pinstress, not of a standard. EN 1993-1-1:2005 covers shear alone in 6.2.6,
+bending with shear in 6.2.8, and both with axial force in 6.2.9 and 6.2.10
+(assess.clauses.eurocode_sections).
 
 Source: EN 1993-1-1:2005, 6.2.6(3) g, for the shear area of a circular hollow section alone.
 """
@@ -37,12 +39,14 @@ INTERACTION_RULE = "(M/M_pl)^2 + (V/V_pl)^2 <= 1, without axial force and torque
 
 
 def plastic_shear(section: Circle, strength: float) -> float:
-    """V_pl, N, of a yield strength in Pa."""
+    """Return V_pl, N, of a section. strength: yield strength, Pa."""
     return max(2.0 / math.pi * section.area, section.axis_area) * strength / math.sqrt(3.0)
 
 
 def _moment(s: Situation, z: float, section: Circle) -> float:
-    """M_pl, N m, of a section at z, m; with a hardened surface the moments of case and core."""
+    """Return M_pl, N m, of a section at z, m; with a hardened surface, the sum of the moments of
+    case and core. At the end of a hardened length the smaller moment counts.
+    """
     material, strength = s.material, s.material.yield_strength or 0.0
     cases = [case for case in material.hardened if case.start <= z <= case.end]
     rings = [cased_rings(section, case) for case in cases]
@@ -61,7 +65,7 @@ def _moment(s: Situation, z: float, section: Circle) -> float:
     omits="Not covered: axial force and torque, which limit loads have.",
 )
 def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
-    """The utilisation of the section that is nearest to a hinge, by even loads or the joint."""
+    """Return the margin of the section nearest to a hinge, with even loads or the joint's."""
     forces, fy = s.forces, s.material.yield_strength
     if forces.kind == "concentrated":
         return []
@@ -81,8 +85,8 @@ def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
             V_pl=(float(V[k]), "force"),
         )  # fmt: skip
 
-        # Where the section is the same: with its diameter the worst place may change, among those
-        # that no other exceeds in both moment and shear.
+        # A change of the diameter changes all places with this section, and the worst place among
+        # them may change. Only places count that no other exceeds in both moment and shear.
         alike = np.array([other == section for other in forces.sections])
         bent, sheared = (forces.moment / M)[:, alike].ravel(), (forces.shear / V)[:, alike].ravel()
         falling = np.lexsort((-sheared, -bent))

@@ -1,8 +1,8 @@
-"""The stress of press fits alone, by Lame's tubes: of a pin in the bore of a lug, and of a bushing
-in its hole.
+"""The stress of press fits alone, by Lame's thick tubes: of a pin in the bore of a lug, and of a
+bushing in its hole.
 
-It needs neither loads nor a shank. A lug whose stress is solved has it in that, and so has a pin
-whose contact is solved.
+The check needs neither loads nor a shank. The solved stress of a lug already includes the press
+fit, and so does the stress of a pin whose contact is solved.
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ METHOD = "press fit"
     omits="Not covered: the loads, which a lug with a shank has in its stress; eyes but rings.",
 )
 def press_fit(text: CheckText, s: Situation) -> list[Margin]:
-    """The margins of pin, bushing and eye with an interference whose stress is not solved."""
+    """Return the margins of pin, bushing and eye for fits with an interference, where the stress of
+    the lug is not solved.
+    """
     solved = {stress.connection for stress in s.lug_stresses}
     lugs = (lug for lug in s.lugs if lug.connection not in solved)
     return [margin for lug in lugs for margin in _margins(text, s, lug)]
@@ -51,8 +53,10 @@ def _margins(text: CheckText, s: Situation, lug: Lug) -> Iterator[Margin]:
 
 
 def _passing(lug: Lug, used: float) -> WorkQuantity | None:
-    """The interference that would just pass, the largest of a range, at the temperature of the
-    study's dimensions; None where pin and bushing are pressed in, or none would.
+    """Return the interference that would just pass, as the largest of its range and at the
+    temperature at which the study states dimensions.
+
+    None if both pin and bushing are pressed in, or if no interference passes.
     """
     of_pin = max(-x for x in (lug.clearance, *(lug.range.clearance or ())))
     if lug.bushing is None:

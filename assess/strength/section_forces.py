@@ -1,12 +1,13 @@
 """Shear force and bending moment along a pin at every instant, for the formulas.
 
-Two ways for a link's force to act on its band: evenly along it, or concentrated at its middle. Away
-from a band both give the same diagrams. At its middle the moment of a force F that is even over a
-length L differs by F L / 8 from that of a concentrated one, and that of a couple m, which is linear
-over the band, by m / 2 on both sides.
+The force of a link can act on its band in two ways: evenly along the band, or concentrated at its
+middle. Away from the band both give the same diagrams. At the middle of the band, the moment of a
+force F that is even over a length L differs by F L / 8 from that of a concentrated force. The
+moment of a couple m, which is linear over the band, differs by m / 2 on both sides.
 
-In double shear (outer lugs of thickness a, a middle one of b, gaps c) the even load is the moment
-F (b + 4 c + 2 a) / 8 of EN 1993-1-8, figure 3.11, and concentrated forces are F (b + 2 c + a) / 4.
+In double shear (outer lugs of thickness a, a middle lug of thickness b, gaps c) even loads give the
+moment F (b + 4 c + 2 a) / 8 of EN 1993-1-8, figure 3.11, and concentrated forces give
+F (b + 2 c + a) / 4.
 
 Source: R. G. Budynas & J. K. Nisbett, Shigley's Mechanical Engineering Design, problem 3-40 (both
 ways); EN 1993-1-8:2005, 3.13.
@@ -38,12 +39,14 @@ Cells = NDArray[np.intp]  # (S,) numbers of a beam's cells
 
 
 def with_section_forces(s: Situation) -> Iterator[Situation]:
-    """The situation with each kind of section forces, the one that the study chooses first.
+    """Yield the situation with each kind of section forces; the kind that the study chooses comes
+    first.
 
-    Where the joint was solved, its section forces govern; even loads are there for comparison, or
-    the other way round. Even loads that leave a couple over are no complete statics: the lugs carry
-    it, and only the joint model knows which, so that its section forces govern in any case.
-    Concentrated forces are a comparison beside the joint model. Without one all govern.
+    If the joint was solved, its section forces govern and even loads are for comparison. If the
+    study chooses even loads, those govern; the section forces of the joint are then for comparison,
+    unless the even loads leave an unbalanced couple. In that case the joint governs as well: the
+    lugs carry the couple, and only the joint model knows which. Concentrated forces are for
+    comparison if the joint was solved. If it was not, all kinds govern.
 
     Raises: as `section_forces`.
     """
@@ -59,7 +62,7 @@ def with_section_forces(s: Situation) -> Iterator[Situation]:
 
 
 def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
-    """Section forces with even loads on the bands, and with concentrated ones.
+    """Return the section forces with even loads on the bands, and with concentrated loads.
 
     Raises: as `stepped_beam`.
     """
@@ -84,7 +87,7 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
 
 
 def of_joint(s: Situation, joint: JointForces) -> SectionForces:
-    """Section forces by the model of the joint, on both sides of each station."""
+    """Return the section forces by the joint model, on both sides of each station."""
     inner = np.array(s.pin.stations[1:-1])
     sides = [np.searchsorted(inner, joint.z, side=side) for side in ("left", "right")]
     segments, z = [int(i) for i in np.concatenate(sides)], np.tile(joint.z, 2)
@@ -111,16 +114,17 @@ def of_joint(s: Situation, joint: JointForces) -> SectionForces:
 
 
 def _values(forces: InternalForces, c: Floats, cells: Cells, z: Floats) -> Floats:
-    """Shear, moment, axial force and torque by phase, (4, S, T, 2)."""
+    """Return shear, moment, axial force and torque by phase, (4, S, T, 2)."""
     inside = forces.inside(cells, z)
     parts = (SHEAR, MOMENT, AXIAL, TORQUE)
     return np.stack([np.einsum("sk,tpk->stp", inside[:, q], c) for q in parts])
 
 
 def _at_middles(s: Situation, forces: InternalForces, c: Floats) -> Floats:
-    """The same on both sides of concentrated loads, (4, 2 C, T, 2).
+    """Return the values of `_values` on both sides of concentrated loads, (4, 2 C, T, 2).
 
-    The shear there is that beyond the band, at which the diagrams end anyway.
+    The shear is set to zero here, because its value is that beyond the band, where the diagrams
+    have it anyway.
     """
     bands = [s.pin.band(name) for name in s.loads.surfaces]
     middles = np.array([b.middle for b in bands])
@@ -163,10 +167,11 @@ def _sized(
 
 
 def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) -> NominalStress:
-    """The largest nominal stress that a property of the sections resists, whichever its plane.
+    """Return the largest nominal stress, in whichever plane it acts.
 
-    c: (T, 2, K) shares of the unit loads. The instant is found by samples; the place then exactly,
-    as the square of V or M is a polynomial between two stations.
+    c: (T, 2, K) amounts of the unit loads. resists: the section property that divides V or M.
+    The instant is found from samples. The place is then found exactly, since the square of V or M
+    is a polynomial between two stations.
     """
     component = MOMENT if resists == "modulus" else SHEAR
     cells, z = sample(forces)

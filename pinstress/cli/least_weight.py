@@ -83,7 +83,7 @@ def weight_goal(goal: SizingGoal, options: LeastWeightOptions, step: float | Non
             code="contradiction",
         )
     stated = {key: value for key in ("wall", "shoulder") if (value := getattr(options, key))}
-    return WeightGoal(goal.required, vary, Proportions(**stated), step, goal.more)
+    return WeightGoal(goal.required, vary, Proportions(**stated), step, goal.multiples)
 
 
 def lighten_and_write(
@@ -153,7 +153,7 @@ def _write(
     with unneeded(target):
         print_light(rows, aim.written, (system.length, unit, heavy), console())
         if probability is not None:
-            factor = "A required factor" if aim.more else f"The factor {short(aim.required)}"
+            factor = "A required factor" if aim.multiples else f"The factor {short(aim.required)}"
             click.echo(
                 f"{factor} is that which is missed with probability {probability:g}, by the first "
                 "order; pinstress reliability samples it."
@@ -221,7 +221,7 @@ def _unlikely(design: LightStudy, pin: str, aim: WeightGoal) -> str:
     low = [
         case
         for case, x in factors.items()
-        if x < aim.required * aim.more.get((pin, case), 1.0) * (1.0 - 1e-9)
+        if x < aim.required * aim.multiples.get((pin, case), 1.0) * (1.0 - 1e-9)
     ]
     if unknown:
         return f"in {', '.join(unknown)} its factor at the probability is not known"

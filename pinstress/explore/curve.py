@@ -18,8 +18,8 @@ from pinstress.study.model.requirements import checks_besides_yield, common_requ
 from pinstress.study.reading.file import Study
 from reports.data.curve import CurvePoint, FactorCurve
 
-USUAL_RANGE = 0.5, 2.0  # times the number in the study
-SAME_VALUE = 1e-9  # of the range: a value that is the nominal one but for round-off
+USUAL_RANGE = 0.5, 2.0  # default ends, relative to the number in the study
+SAME_VALUE = 1e-9  # relative to the range: a value closer to the nominal one equals it
 STRESS = "stress"
 
 Ends = tuple[float | str | None, float | str | None]
@@ -34,16 +34,16 @@ def curve(
     jobs: int = 1,
     progress: Progress = lambda _, __: None,
 ) -> FactorCurve:
-    """Solve a study at evenly spaced values of one of its numbers, and at the one that it has.
+    """Solve a study at evenly spaced values of one of its numbers, and at its nominal value.
 
-    key: as in messages and [vary], "pin.E.profile[2].diameter".
-    ends: the first and the last value, in the study's units or as texts with a unit; by default
-    half and twice the number in the study; of a temperature, half and twice its rise.
-    pins: names; by default the pin that the key belongs to, else all.
+    key: the number, as in messages and [vary]: "pin.E.profile[2].diameter".
+    ends: the first and the last value, in the study's units or as text with a unit; by default half
+    and twice the number in the study or, for a temperature, half and twice its rise.
+    pins: names; by default the pin to which the key belongs, else all pins.
     jobs: number of processes.
 
-    A design that cannot be built or solved is a point without numbers, with its reason.
-    Raises: InputError for a key that is no number of the study, and for a range without extent.
+    A design that cannot be built or solved gives a point without numbers, with the reason.
+    Raises: InputError for a key that is not a number of the study, and for an empty range.
     """
     number = _number(study, key)
     low, high = _range(study, number, ends)
@@ -51,7 +51,7 @@ def curve(
         pins = [str(number.path[1])]
     evaluator = Evaluator(study, [number], pins)
     values = values_between(low, high, number.nominal, points)
-    # Neighbours have most in common, so each process takes one part of the range.
+    # Neighbouring values share the most data, so each process takes one part of the range.
     parts = np.array_split(values, min(jobs, len(values)))
     work = [Job(key, partial(_solved, evaluator, part)) for part in parts]
     outcomes = in_parallel(work, jobs, progress)
@@ -72,7 +72,7 @@ def curve(
 
 
 def values_between(low: float, high: float, nominal: float, points: int) -> Floats:
-    """Return evenly spaced values, and the nominal one, which may be one of them, if between."""
+    """Return evenly spaced values, with the nominal value added if it lies between the ends."""
     values = np.linspace(low, high, points)
     if not low < nominal < high:
         return values
@@ -88,7 +88,7 @@ def _number(study: Study, key: str) -> Number:
 
 
 def _is_required(number: Number) -> bool:
-    """Whether the number is itself a factor that is required."""
+    """Whether the number is itself a required factor."""
     return number.path[0] == "require" or number.path[-1] == "required_safety_factor"
 
 
@@ -115,8 +115,8 @@ def _range(study: Study, number: Number, ends: Ends) -> tuple[float, float]:
 
 
 def _zero_of_range(study: Study, number: Number) -> float:
-    """Return the value of which the usual range is a multiple: 0, but of a temperature the one of
-    the study's dimensions, as the rise above it is what acts.
+    """Return the zero point of the usual range: 0 or, for a temperature, the reference temperature
+    of the study's dimensions, because only the rise above it has an effect.
     """
     if number.dimension == "temperature":
         return study.table.analysis.reference_temperature

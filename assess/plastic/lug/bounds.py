@@ -1,16 +1,18 @@
-"""Bounds of the load that presses a plane body, in plane strain: cone programs on triangles.
+"""Bounds of the limit load of a plane body in plane strain: cone programs on triangles.
 
-*Lower.* Stress is linear in each triangle, in equilibrium there, across every edge and with what
-acts on the boundary, and nowhere beyond yield: yield at the corners suffices, as it is convex. By
-the static theorem the load is a strict lower bound for the body of these triangles.
+*Lower bound.* The stress is linear in each triangle. It is in equilibrium inside the triangles,
+across every edge and with the tractions on the boundary, and nowhere exceeds yield; because the
+yield condition is convex, it need only be imposed at the corners. By the static theorem the load is
+a strict lower bound for the body of these triangles.
 
-*Upper.* Velocity is quadratic in each triangle, its strain rate linear. No change of volume at the
-corners means none anywhere, and the work of flow, a convex function, is at most that of the values
-at the corners: by the kinematic theorem a strict upper bound, and no locking.
+*Upper bound.* The velocity is quadratic in each triangle, and its strain rate is linear. If the
+volume does not change at the corners, it changes nowhere. The work of flow is a convex function, so
+it is at most that computed from the values at the corners. By the kinematic theorem the result is a
+strict upper bound, and there is no locking.
 
-A rigid pin without friction presses edges "bore" and may leave them: pressures are not negative,
-and no point of an edge penetrates the pin, for which it suffices that the three control points of
-its quadratic velocity do not.
+A rigid, frictionless pin presses on the edges "bore" and may separate from them: pressures are not
+negative, and no point of an edge penetrates the pin. For the latter it suffices that the three
+control points of the edge's quadratic velocity do not.
 
 Source: A. V. Lyamin, S. W. Sloan, Int. J. Num. Meth. Eng. 55 (2002) 573; A. Makrodimopoulos, C. M.
 Martin, Int. J. Num. Anal. Meth. Geomech. 31 (2007) 835.
@@ -25,21 +27,21 @@ from assess.plastic.lug.cone_program import ConeProgram
 from assess.plastic.lug.mesh import PlaneMesh
 from pinbase.arrays import Floats, Ints
 
-# Edges by name: "bore" is pressed along its normal, "axis" are planes of symmetry along x or y,
-# "held" does not move, "free" has no load.
+# Edges by name: "bore" is loaded by a normal pressure, "axis" are planes of symmetry along x or y,
+# "held" is fixed, "free" has no load.
 
 
 def lower_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
-    """The program of a lower bound.
+    """Return the cone program of a lower bound.
 
-    motion: (2,), or (E, 2) of each pressed edge, the velocity of what presses, on which the
-    pressures do the work that is the value.
+    motion: velocity of the pressing body, (2,), or (E, 2) for each pressed edge. The value of the
+    program is the power of the pressures on this velocity.
     """
     count = len(mesh.triangles)
     gradients, area = mesh.gradients()
     rows = _Rows(3 * count)
     point = np.arange(3 * count).reshape(count, 3)
-    # Equilibrium in a triangle, times the root of its area for rows of one size.
+    # Equilibrium in each triangle, times the root of its area, so that all rows have similar size.
     scaled = gradients * np.sqrt(area)[:, None, None]
     rows.add_stress(point, scaled[..., 0], scaled[..., 1], 0)
     rows.add_stress(point, scaled[..., 0], scaled[..., 1], 1)
@@ -70,7 +72,7 @@ def lower_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
 
 
 def upper_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
-    """The program of an upper bound; arguments as for the lower one."""
+    """Return the cone program of an upper bound; arguments as for `lower_program`."""
     space = QuadraticNodes(mesh)
     x, y = space.gradients(np.eye(3))  # (M, 3 points, 6 nodes), at the corners
     area = mesh.gradients()[1]
@@ -96,7 +98,8 @@ def upper_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
 
     edges = mesh.edges["bore"]
     nodes, n = space.of_edges(edges), _Sides(mesh).outer(edges)[1]
-    # Control values of a quadratic: its ends, and twice the middle less the mean of the ends.
+    # Control values of a quadratic: the end values, and twice the middle value less the mean of the
+    # end values.
     controls = np.array([[1.0, 0.0, 0.0], [-0.5, -0.5, 2.0], [0.0, 1.0, 0.0]])
     data = controls[None, :, :, None] * n[:, None, None, :]
     load = np.arange(3 * len(edges)).reshape(-1, 3)
@@ -113,9 +116,9 @@ def upper_program(mesh: PlaneMesh, motion: Floats) -> ConeProgram:
 
 
 class QuadraticNodes:
-    """The nodes of quadratic triangles on a mesh: its corners, then the middles of sides.
+    """The nodes of quadratic triangles on a mesh: the nodes of the mesh, then the midside nodes.
 
-    numbers: (M, 6) corners, then the middles of the sides from 0 to 1, 1 to 2, 2 to 0.
+    numbers: (M, 6) corners, then the midside nodes of the sides from 0 to 1, 1 to 2, 2 to 0.
     """
 
     def __init__(self, mesh: PlaneMesh) -> None:
@@ -127,7 +130,7 @@ class QuadraticNodes:
         self.count: int = len(mesh.nodes) + len(self.sides)
 
     def of_edges(self, edges: Ints) -> Ints:
-        """The nodes (E, 3) of edges: ends, middle."""
+        """Return the nodes (E, 3) of edges: both ends, then the midside node."""
         span = len(self.mesh.nodes)
         key = self.sides[:, 0] * span + self.sides[:, 1]
         ends = np.sort(edges, axis=1)
@@ -135,7 +138,10 @@ class QuadraticNodes:
         return np.concatenate([edges, middle[:, None]], axis=1)
 
     def gradients(self, places: Floats) -> tuple[Floats, Floats]:
-        """The x and y derivatives (M, Q, 6) at places (Q, 3) in area coordinates."""
+        """Return the x and y derivatives of the shape functions, (M, Q, 6) each.
+
+        places: (Q, 3) in area coordinates.
+        """
         corner = self.mesh.gradients()[0]
         # Corner i: L (2 L - 1); middle of i, j: 4 Li Lj.
         slope = np.zeros((len(places), 6, 3))
@@ -148,7 +154,7 @@ class QuadraticNodes:
 
 
 class _Sides:
-    """The sides of triangles, with the number of the stress point at each of their ends."""
+    """The sides of the triangles, with the number of the stress point at each of their ends."""
 
     def __init__(self, mesh: PlaneMesh) -> None:
         pairs = np.array([[0, 1], [1, 2], [2, 0]])
@@ -158,7 +164,8 @@ class _Sides:
         order = np.argsort(key, kind="stable")
         same = np.flatnonzero(np.diff(key[order]) == 0)
         first, second = order[same], order[same + 1]
-        # Both triangles are counter-clockwise, so the second has the side's ends in reverse.
+        # Both triangles are counter-clockwise, so the second has the ends of the side in reverse
+        # order.
         self.inner = np.stack([points[first], points[second][:, ::-1]], axis=1)
         self.inner_normal = _normals(mesh.nodes[nodes[first]])
         self._mesh = mesh
@@ -166,7 +173,9 @@ class _Sides:
         self._points = points
 
     def outer(self, edges: Ints) -> tuple[Ints, Floats]:
-        """The points (E, 2) at the ends of edges of the boundary, and their outward normals."""
+        """Return the stress points (E, 2) at the ends of boundary edges, and the outward normals of
+        these edges (E, 2).
+        """
         at = [self._lookup[tuple(e)] for e in edges.tolist()]
         return self._points[at], _normals(self._mesh.nodes[edges])
 
@@ -178,14 +187,16 @@ def _normals(ends: Floats) -> Floats:
 
 
 class _Rows:
-    """The rows of a lower bound, as they are added."""
+    """The rows of the program of a lower bound, which are added one group at a time."""
 
     def __init__(self, points: int) -> None:
         self.points, self.count, self.loads = points, 0, 0
         self.entries: dict[str, list[tuple[Floats, Ints, Ints]]] = {k: [] for k in "pqtc"}
 
     def add_stress(self, points: Ints, x: Floats, y: Floats, component: int) -> None:
-        """Rows: the sum over points (E, J) of x sxx + y sxy, or of x sxy + y syy."""
+        """Add E rows: the sum over points (E, J) of x sxx + y sxy (component 0), or of
+        x sxy + y syy (component 1).
+        """
         row = self._more(points)
         first = component == 0
         parts = {"p": x, "q": x, "t": y} if first else {"p": y, "q": -y, "t": x}
@@ -193,7 +204,9 @@ class _Rows:
             self.entries[name].append((np.broadcast_to(values, points.shape), row, points))
 
     def add_traction(self, points: Ints, n: Floats, along: Floats, pressed: bool = False) -> None:
-        """Rows: the traction along a direction (E, 2), plus a pressure of its own if pressed."""
+        """Add E rows: the traction along a direction (E, 2) on edges with normals n (E, 2), plus an
+        unknown pressure for each row if `pressed`.
+        """
         row = self._more(points)
         (a, b), (c, d) = n.T, along.T
         parts = {"p": a * c + b * d, "q": a * c - b * d, "t": a * d + b * c}
@@ -205,7 +218,7 @@ class _Rows:
             self.loads += len(points)
 
     def program(self, gain: Floats) -> ConeProgram:
-        """The program of these rows."""
+        """Return the program of these rows; gain: (L,) as in `ConeProgram`."""
         p, q, t, c = (self._matrix(k) for k in "pqtc")
         return ConeProgram(p, q, t, c, gain)
 

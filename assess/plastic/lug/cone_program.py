@@ -1,17 +1,17 @@
 """Limit analysis in plane strain as a cone program, solved by an interior-point method.
 
-Unknown are stresses at points, p + q and p - q along x and y and t in shear, and amounts c of
-loads:
+The unknowns are the stresses at points (p + q and p - q along x and y, and t in shear) and the
+amounts c of the loads:
 
-    largest g c   with   P p + Q q + T t + C c = 0,   sqrt(q^2 + t^2) <= 1,   c >= 0.
+    maximise g c   with   P p + Q q + T t + C c = 0,   sqrt(q^2 + t^2) <= 1,   c >= 0.
 
-The rows are equations of equilibrium: of stress in a lower bound, of what it does on velocities in
-an upper one (assess.plastic.lug.bounds). Their multipliers are velocities, so a solution brackets
-its optimum: g c is below it, the work of flow above.
+The rows are equations of equilibrium: of the stress itself in a lower bound, of its virtual work in
+an upper bound (assess.plastic.lug.bounds). Their Lagrange multipliers are velocities, so that a
+solution brackets its optimum: g c is below it, the work of flow is above it.
 
-The method is the primal-dual one with the scaling of Nesterov and Todd and the corrector of
-Mehrotra. The mean stress p has no cone; a small compliance of p in the linear systems makes them
-positive definite, like those of a nearly incompressible body, and refinement takes its effect away.
+The method is a primal-dual one with the scaling of Nesterov and Todd and the corrector of Mehrotra.
+The mean stress p is not in a cone. A small compliance of p in the linear systems makes them
+positive definite, as for a nearly incompressible body; iterative refinement removes its effect.
 
 Source: L. Vandenberghe, The CVXOPT linear and quadratic cone program solvers (2010), sections 5 to
 7; A. Makrodimopoulos, C. M. Martin, Int. J. Num. Meth. Eng. 66 (2006) 604, for limit analysis.
@@ -30,21 +30,22 @@ from fea.core.linear_solver import Analysis, SolveError
 from pinbase.arrays import Floats
 
 MAX_ITERATIONS = 80  # 12 to 20 are usual
-GAP_TOLERANCE = 1e-4  # between the two bounds of a program's optimum
-MAX_GAP = 2e-3  # the same, where round-off ends the iterations before
-MIN_STEP = 1e-4  # of the step that would close the gap: less is round-off
-STEP_SHARE = 0.98  # of the step to the boundary of the cones
-# Compliance of the mean stress over the least of the shear at each point, in the linear systems;
-# chosen by judgement: smaller is worse conditioned, larger takes more steps of refinement.
+GAP_TOLERANCE = 1e-4  # relative gap between the two bounds of the optimum
+MAX_GAP = 2e-3  # largest accepted relative gap where round-off ends the iterations earlier
+MIN_STEP = 1e-4  # relative to a full Newton step: a smaller step is round-off
+STEP_SHARE = 0.98  # fraction of the step to the boundary of the cones that is taken
+# Compliance of the mean stress in the linear systems, relative to the smallest compliance in shear
+# at each point. Chosen by judgement: a smaller value is worse conditioned, a larger one takes more
+# steps of refinement.
 MEAN_COMPLIANCE = 1e-4
-REFINEMENTS = 4  # of a linear solution, by what it leaves of the right-hand side
+REFINEMENTS = 4  # steps of iterative refinement of a linear solution
 
 Residuals = tuple[Floats, Floats, Floats, Floats]  # as of `_Solver.residuals`
 
 
 @dataclass(frozen=True)
 class ConeProgram:
-    """The data of a program with N points, L loads and R rows; k is 1.
+    """The data of a program with N points, L loads and R rows; the shear strength is 1.
 
     mean, difference, shear: P, Q, T (R, N). loads: C (R, L). gain: g (L,).
     """
@@ -60,9 +61,9 @@ class ConeProgram:
 class ConeSolution:
     """The optimum of a program.
 
-    lower, upper: of its value, by its stresses and by its velocities; both allow for the work of
-    what is left of the equations.
-    stress: p, q, t (3, N). loads: c (L,). velocity: of the rows (R,).
+    lower, upper: bounds of the optimal value, from the stresses and from the velocities; both allow
+    for the work of the residuals.
+    stress: p, q, t (3, N). loads: c (L,). velocity: the multipliers of the rows (R,).
     flow: (N,) work of flow at each point.
     """
 
@@ -77,10 +78,11 @@ class ConeSolution:
 
 @dataclass
 class _Iterate:
-    """Values, or their change.
+    """The values of an iterate, or their change.
 
-    x: stresses p, q, t and loads, (3 N + L,). y: velocities (R,). s: (1, q, t) and z: work of flow
-    and strain rates, (3, N), in the cones. z_load: velocities that leave what presses, (L,).
+    x: stresses p, q, t and loads, (3 N + L,). y: velocities (R,). s: (1, q, t), (3, N), in the
+    cones. z: work of flow and strain rates, (3, N), in the cones. z_load: velocities of separation
+    from the pressing body, (L,).
     """
 
     x: Floats
@@ -91,16 +93,16 @@ class _Iterate:
 
 
 def solve_cone_program(program: ConeProgram) -> ConeSolution:
-    """The optimum of a program.
+    """Return the optimum of a program.
 
-    Raises: SolveError when the method does not converge.
+    Raises: SolveError if the method does not converge.
     """
     solver = _Solver(program)
     now, n = solver.start(), solver.points
     lower, upper, iterations = -np.inf, np.inf, 0
     while iterations < MAX_ITERATIONS:
         residuals = solver.residuals(now)
-        # Round-off may spoil the last iterates: the one with the smallest gap counts.
+        # Round-off may spoil the last iterates: the bounds with the smallest gap count.
         below, above = solver.bounds(now, residuals)
         if above - below < upper - lower:
             lower, upper = below, above
@@ -120,7 +122,7 @@ def solve_cone_program(program: ConeProgram) -> ConeSolution:
 
 
 class _Solver:
-    """The method for one program."""
+    """The interior-point method for one program."""
 
     def __init__(self, program: ConeProgram) -> None:
         self.gain = program.gain
@@ -132,7 +134,7 @@ class _Solver:
         self.analysis = Analysis(self.schur.matrix(np.ones(self.schur.size)))
 
     def start(self) -> _Iterate:
-        """No stress, loads of one."""
+        """Return the first iterate: zero stress, unit loads."""
         centre = np.zeros((3, self.points))
         centre[0] = 1.0
         scale = float(np.abs(self.gain).mean())
@@ -141,8 +143,8 @@ class _Solver:
         return _Iterate(x, np.zeros(rows), centre, scale * centre, many)
 
     def residuals(self, now: _Iterate) -> Residuals:
-        """The residuals of the rows (R,), of constant volume (N,), of the strain rates (2, N) and
-        of the loads' velocities (L,).
+        """Return the residuals of the rows (R,), of the volume change (N,), of the strain rates
+        (2, N) and of the velocities of the loads (L,).
         """
         n, back = self.points, self.transposed @ now.y
         shear = back[n : 3 * n].reshape(2, n) - now.z[1:]
@@ -150,8 +152,11 @@ class _Solver:
         return self.matrix @ now.x, back[:n], shear, gain
 
     def bounds(self, now: _Iterate, residuals: Residuals) -> tuple[float, float]:
-        """The value by the stresses, less the work of unbalanced rows on the velocities, and the
-        work of flow, plus that of the stresses on what the velocities do not satisfy.
+        """Return the lower and the upper bound of the optimal value.
+
+        The lower bound is the value of the stresses, less the work of the row residuals on the
+        velocities. The upper bound is the work of flow, plus the work of the stresses on the other
+        residuals.
         """
         unbalanced, *missed = residuals
         left = float(np.abs(np.concatenate([m.ravel() for m in missed]) * now.x).sum())
@@ -159,9 +164,8 @@ class _Solver:
         return value, float(now.z[0].sum()) + left
 
     def advance(self, now: _Iterate, residuals: Residuals) -> bool:
-        """One step: a predictor says how far the gap can be closed, a corrector does it.
-
-        Returns whether there was one; round-off ends them.
+        """Advance by one step: the predictor shows how far the gap can be closed, the corrector
+        closes it. Return False if round-off makes the step too short.
         """
         newton = _Newton(self, now, residuals)
         cone, load = newton.cone, newton.load
@@ -185,7 +189,7 @@ class _Solver:
         return True
 
     def longest(self, now: _Iterate, change: _Iterate) -> float:
-        """The longest step that stays in the cones and leaves loads positive."""
+        """Return the longest step that stays in the cones and keeps the loads positive."""
         first = 3 * self.points
         steps = [longest_step(now.s, change.s), longest_step(now.z, change.z)]
         for v, d in ((now.x[first:], change.x[first:]), (now.z_load, change.z_load)):
@@ -194,9 +198,9 @@ class _Solver:
 
 
 class _Newton:
-    """Newton's equations at an iterate, for any target of complementarity.
+    """The Newton equations at an iterate, for any target of complementarity.
 
-    With the scaled blocks H of the stresses and loads they are H dx + A'dy = r, A dx = e.
+    With the scaled blocks H of the stresses and loads, the equations are H dx + A'dy = r, A dx = e.
     """
 
     def __init__(self, solver: _Solver, now: _Iterate, residuals: Residuals) -> None:
@@ -213,8 +217,10 @@ class _Newton:
         )
 
     def change(self, target: Floats, load_target: Floats, part: float) -> _Iterate:
-        """The change that leads to a target (3, N) and (L,) of complementarity, and takes away a
-        part of the residuals.
+        """Return the change that leads to a target of complementarity and removes a part of the
+        residuals.
+
+        target: (3, N) for the cones. load_target: (L,) for the loads. part: 0 to 1.
         """
         n, scale = self.solver.points, self._load_scale
         unbalanced, volume, shear, gain = self.residuals
@@ -233,7 +239,7 @@ class _Newton:
         return _Iterate(x, y, ds, self._stiff(towards - ds), dz_load)
 
     def _solution(self, right: Floats, rows: Floats) -> tuple[Floats, Floats]:
-        """x and y, by iterative refinement of the system with a compliance of the mean stress."""
+        """Return x and y, by iterative refinement of the system with a compliant mean stress."""
         matrix, transposed = self.solver.matrix, self.solver.transposed
         n = self.solver.points
         x, y = np.zeros(len(right)), np.zeros(len(rows))
@@ -247,11 +253,11 @@ class _Newton:
         return x, y
 
     def _stiff(self, v: Floats) -> Floats:
-        """W^-2 v."""
+        """Return W^-2 v."""
         return np.asarray(np.einsum("ijn,jn->in", self._inner, v))
 
     def _compliant(self, v: Floats) -> Floats:
-        """The inverse of H with the compliance of the mean stress, times v."""
+        """Return the inverse of H, with the compliance of the mean stress, times v."""
         n = self.solver.points
         p, qq, qt, _, tt = self._compliances[: 5 * n].reshape(5, n)
         mean, q, t = v[: 3 * n].reshape(3, n)
@@ -259,8 +265,8 @@ class _Newton:
         return np.concatenate([p * mean, qq * q + qt * t, qt * q + tt * t, loads])
 
     def _blocks(self) -> Floats:
-        """The entries of that inverse, in the order of `SchurComplement`."""
-        # Of q and t H is (1 + 2 w w') / size^2.
+        """Return the entries of the inverse of H, in the order of `SchurComplement`."""
+        # For q and t, H is (1 + 2 w w') / size^2.
         w, square = self.scaling.w[1:], self.scaling.size**2
         less = 2.0 * square / (1.0 + 2.0 * (w**2).sum(axis=0))
         across = -less * w[0] * w[1]

@@ -22,15 +22,15 @@ class Scaling:
         self.size: Floats = (det_s / det_z) ** 0.25
 
     def times(self, v: Floats) -> Floats:
-        """W v."""
+        """Return W v."""
         return self.size * _boosted(self.w, v)
 
     def inverse_times(self, v: Floats) -> Floats:
-        """W^-1 v."""
+        """Return W^-1 v."""
         return _boosted(_mirrored(self.w), v) / self.size
 
     def inverse_square(self) -> Floats:
-        """W^-2, (3, 3, N)."""
+        """Return W^-2, (3, 3, N)."""
         u = _mirrored(self.w)
         out = 2.0 * u[:, None] * u[None]
         for i, sign in enumerate((1.0, -1.0, -1.0)):
@@ -39,24 +39,26 @@ class Scaling:
 
 
 def product(u: Floats, v: Floats) -> Floats:
-    """The product u o v of the cones' algebra."""
+    """Return the product u o v in the algebra of the cones."""
     return np.concatenate([(u * v).sum(axis=0)[None], u[0] * v[1:] + v[0] * u[1:]])
 
 
 def divided(u: Floats, v: Floats) -> Floats:
-    """w with u o w = v."""
+    """Return w such that u o w = v."""
     head = (u[0] * v[0] - (u[1:] * v[1:]).sum(axis=0)) / determinant(u)
     return np.concatenate([head[None], (v[1:] - head * u[1:]) / u[0]])
 
 
 def determinant(v: Floats) -> Floats:
-    """v0^2 - |v1|^2, without cancellation; zero on the boundary of a cone."""
+    """Return v0^2 - |(v1, v2)|^2 without cancellation; zero on the boundary of a cone."""
     size = np.hypot(v[1], v[2])
     return np.asarray((v[0] - size) * (v[0] + size))
 
 
 def longest_step(v: Floats, d: Floats) -> float:
-    """The longest step along d (3, N) from v that stays in the cones; infinite if any does."""
+    """Return the longest step along d (3, N) from v that stays in the cones; infinite if there is
+    no limit.
+    """
     # The determinant along the step, a x^2 + 2 b x + c, at its first positive root.
     a, b, c = _indefinite(d, d), _indefinite(v, d), determinant(v)
     root = np.sqrt(np.maximum(b * b - a * c, 0.0))

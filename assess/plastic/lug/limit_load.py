@@ -1,12 +1,14 @@
-"""The limit load of a lug: the force of a pin per thickness at which it collapses, in plane strain.
+"""The limit load of a lug in plane strain: the pin force per thickness at which the lug collapses.
 
-The pin pulls along the shank. Rigid-perfectly plastic, small displacements, a rigid pin without
-friction that fits and may leave the bore anywhere. Clearance does not matter: what flows closes it.
-Two cone programs on each of a few meshes bound the load strictly for their polygons
-(assess.plastic.lug.bounds); each mesh is finer where the one before flows.
+The pin pulls along the shank. The lug is rigid-perfectly plastic with small displacements; the pin
+is rigid and frictionless, fits the bore and may separate from it anywhere. Clearance has no effect,
+because plastic flow closes it. Two cone programs on each of a few meshes give strict bounds of the
+load for the meshed polygon (assess.plastic.lug.bounds). Each mesh is refined where the lug on the
+previous mesh flows.
 
-Plane stress is not offered: there a bore that flows carries no more than 1.15 times yield on its
-projected area, whatever the head is like, whereas a bore in metal that is held across does.
+Plane stress is not offered: in plane stress a yielding bore carries at most 1.15 times yield on its
+projected area, whatever the shape of the head. Metal that is constrained across its thickness
+carries more.
 """
 
 from __future__ import annotations
@@ -26,15 +28,15 @@ from pinbase.arrays import Floats
 
 ForcePerLength = Annotated[float, "force per length"]
 
-FIRST_SIZE = 0.08  # radii, of triangles at the bore on the first mesh
-TRIANGLE_COUNTS = 1200, 2400, 4000  # wanted of the meshes after that: 1, 3 and 5 s
-MAX_BRACKET = 0.03  # width of a bracket over its middle, by default
-# Triangles are as large as (work of flow per area)^-SIZE_EXPONENT; of 1/4, 1/3 and 1/2 the last
-# gave the narrowest bracket on a round lug 3 bores wide.
+FIRST_SIZE = 0.08  # size of the triangles at the bore on the first mesh, in radii
+TRIANGLE_COUNTS = 1200, 2400, 4000  # target numbers for the later meshes; they take 1, 3 and 5 s
+MAX_BRACKET = 0.03  # default width of the bracket relative to its middle
+# The size of triangles is proportional to (work of flow per area)^-SIZE_EXPONENT. Of 1/4, 1/3 and
+# 1/2 the last gave the narrowest bracket on a round lug 3 bores wide.
 SIZE_EXPONENT = 0.5
-MIN_FLOW_SHARE = 1e-3  # of the largest work of flow per area: less does not enlarge triangles
-MAX_SIZE = 0.5  # radii
-EQUILATERAL = math.sqrt(3.0) / 4.0  # area over the square of a side
+MIN_FLOW_SHARE = 1e-3  # floor of the work of flow per area relative to its largest value
+MAX_SIZE = 0.5  # largest triangle, in radii
+EQUILATERAL = math.sqrt(3.0) / 4.0  # area of an equilateral triangle over its side squared
 PULL = np.array([1.0, 0.0])
 
 
@@ -49,10 +51,10 @@ class LugMeshBounds:
 
 @dataclass(frozen=True)
 class LugLimitLoad:
-    """The load per thickness at which a lug collapses, N/m, between lower and upper.
+    """The load per thickness at which a lug collapses, N/m; it lies between `lower` and `upper`.
 
-    polygon: the part of them by which both are moved outwards, because arcs are meshed as polygons;
-    an estimate. meshes: of which the best bounds count.
+    polygon: relative amount by which both bounds are widened, because arcs are meshed as polygons;
+    an estimate. meshes: the bounds of all meshes, of which the best count.
     """
 
     lower: ForcePerLength
@@ -67,24 +69,27 @@ class LugLimitLoad:
 
     @property
     def half_width(self) -> float:
-        """Half of the bracket over its middle."""
+        """Half the width of the bracket, relative to its middle."""
         return (self.upper - self.lower) / (self.upper + self.lower)
 
 
 def lug_limit_load(
     lug: LugOutline, yield_strength: float, max_bracket: float = MAX_BRACKET
 ) -> LugLimitLoad:
-    """The limit load of a lug whose metal flows at a von Mises stress, Pa.
+    """Return the limit load of a lug.
 
-    lug: with a bushing the hole in which it sits counts: the bushing is part of the pin.
-    max_bracket: the width over the middle at which no finer mesh is made; the finest is the last in
-    any case.
+    lug: if there is a bushing, its hole is the one in which the bushing sits, since the bushing is
+    treated as part of the pin.
+    yield_strength: von Mises stress at which the metal flows, Pa.
+    max_bracket: refinement ends when the width of the bracket relative to its middle is at most
+    this, or after the finest mesh.
 
-    Raises: ArgumentError for a strength that is not positive, or a ring; MeshError; SolveError.
+    Raises: ArgumentError for a strength that is not positive, or for a ring; MeshError; SolveError.
     """
     if not (math.isfinite(yield_strength) and yield_strength > 0.0):
         raise ArgumentError("the yield strength of a lug must be positive", "not-positive")
-    # Two halves; lengths of the programs are radii, stresses the shear strength.
+    # The lug is two halves; in the programs the unit of length is the radius of the hole, and the
+    # unit of stress the shear strength.
     unit = 2.0 * yield_strength / math.sqrt(3.0) * lug.hole / 2.0
     meshes: list[LugMeshBounds] = []
     mesh = half_lug_mesh(lug, FIRST_SIZE)
@@ -112,7 +117,9 @@ def _width(meshes: list[LugMeshBounds]) -> float:
 
 
 def _sizes(mesh: PlaneMesh, solutions: tuple[ConeSolution, ConeSolution], count: int) -> Floats:
-    """Sizes (N,) of about `count` triangles, small where either solution flows."""
+    """Return the triangle sizes at the nodes (N,) for about `count` triangles; they are small where
+    either solution flows.
+    """
     corner = mesh.triangles.ravel()
     area = mesh.gradients()[1]
     flow = sum(s.flow.reshape(-1, 3).sum(axis=1) / s.flow.sum() for s in solutions)
@@ -124,7 +131,9 @@ def _sizes(mesh: PlaneMesh, solutions: tuple[ConeSolution, ConeSolution], count:
 
 
 def _polygon_share(lug: LugOutline, mesh: PlaneMesh) -> float:
-    """The largest height of the bore's arcs over their chords, of the metal behind the pin."""
+    """Return the largest height of the bore's arcs over their chords, relative to the thickness of
+    the metal between the bore and the end of the head.
+    """
     chord = np.linalg.norm(np.diff(mesh.nodes[mesh.edges["bore"]], axis=1)[:, 0], axis=1).max()
     height = 1.0 - math.sqrt(1.0 - (chord / 2.0) ** 2)
     return float(height / (2.0 * lug.end / lug.hole - 1.0))

@@ -1,6 +1,6 @@
-"""Triangles with straight sides of a plane body, with named edges.
+"""Meshes of straight-sided triangles of a plane body, with named edges.
 
-Of a lug only the half above its axis is meshed. Arcs become polygons with vertices on them.
+Only the half of a lug above its axis is meshed. Arcs become polygons with vertices on the arcs.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from geometry.mesh.gmsh_session import formula_size, gmsh_model, set_size
 from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats, Ints
 
-GROWTH = 0.25  # of the size of triangles per distance from the bore; chosen by judgement
+GROWTH = 0.25  # growth of the triangle size per distance from the bore; chosen by judgement
 
 
 @dataclass(frozen=True)
 class PlaneMesh:
-    """N nodes and M triangles, in any unit of length.
+    """A mesh of N nodes and M triangles, in any unit of length.
 
-    nodes: (N, 2). triangles: (M, 3), counter-clockwise. edges: by name the node numbers (E, 2) of
-    edges on the boundary, with the body on the left.
+    nodes: (N, 2). triangles: (M, 3), counter-clockwise. edges: the node numbers (E, 2) of the
+    boundary edges, by name, with the body on their left.
     """
 
     nodes: Floats
@@ -32,14 +32,14 @@ class PlaneMesh:
     edges: dict[str, Ints]
 
     def corners(self) -> Floats:
-        """The corners (M, 3, 2) of the triangles."""
+        """Return the corners (M, 3, 2) of the triangles."""
         return np.asarray(self.nodes[self.triangles])
 
     def gradients(self) -> tuple[Floats, Floats]:
-        """The gradients (M, 3, 2) of the corners' linear functions, and the areas (M,)."""
+        """Return the gradients (M, 3, 2) of the linear shape functions, and the areas (M,)."""
         x = self.corners()
         across = np.roll(x, -1, axis=1) - np.roll(x, -2, axis=1)
-        # The gradient of corner i: the opposite side, turned, over twice the area.
+        # The gradient of corner i is the opposite side, rotated by 90 degrees, over twice the area.
         a, b = x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]
         double = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
         turned = np.stack([across[..., 1], -across[..., 0]], axis=-1)
@@ -47,13 +47,14 @@ class PlaneMesh:
 
 
 def half_lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = None) -> PlaneMesh:
-    """The half of a lug above its axis, in radii of its hole, the direction of the pull along x.
+    """Return the mesh of the half of a lug above its axis, in radii of its hole. The pull acts
+    along x.
 
-    lug: its x axis is turned round: the shank lies along -x. A bushing counts as part of the pin.
-    size: of triangles at the hole, in radii; it grows outwards.
-    refinement: sizes at points, which replace that.
+    lug: its x axis is reversed, so that the shank lies along -x. A bushing is part of the pin.
+    size: triangle size at the hole, in radii; it grows outwards.
+    refinement: triangle sizes at points, which replace `size`.
 
-    Its edges are "bore" (where the pin may press), "axis", "held" and "free".
+    The edges of the mesh are "bore" (where the pin may press), "axis", "held" and "free".
 
     Raises: ArgumentError for a ring, which has no shank; MeshError.
     """
@@ -86,13 +87,13 @@ def half_lug_mesh(lug: LugOutline, size: float, refinement: SizeField | None = N
 
 @dataclass(frozen=True)
 class SizeField:
-    """Sizes of triangles at the nodes of a mesh, (N,)."""
+    """The wanted triangle sizes (N,) at the nodes of a mesh."""
 
     mesh: PlaneMesh
     sizes: Floats
 
     def added(self, gmsh: Any) -> int:
-        """The number of the field of these sizes in gmsh."""
+        """Add these sizes as a field to gmsh and return the number of the field."""
         view = gmsh.view.add("sizes")
         x = self.mesh.corners()
         flat = np.concatenate(
@@ -106,7 +107,9 @@ class SizeField:
 
 
 def _outside(geo: Any, lug: LugOutline) -> tuple[list[int], int, int]:
-    """The curves from the end on the axis to the upper corner that is held, and these points."""
+    """Add the outline of a lug to gmsh. Return its curves, from the end on the axis to the upper
+    held corner, and the numbers of these two points.
+    """
     one = lug.hole / 2.0
     tip = geo.addPoint(lug.end / one, 0.0, 0.0)
     if lug.shape == "square":
@@ -116,7 +119,7 @@ def _outside(geo: Any, lug: LugOutline) -> tuple[list[int], int, int]:
         return [geo.addLine(tip, first), geo.addLine(first, last)], tip, last
     (x1, y1), (x2, y2) = lug.joints
     x, radius = -lug.centre, lug.head / 2.0
-    # The head's arc to where a side leaves it, in two parts, each less than half a turn.
+    # The arc of the head up to its tangent point with a side, in two parts below half a turn each.
     meets = math.atan2(y1, -x1 - x)
     middle = x + radius * math.cos(meets / 2.0), radius * math.sin(meets / 2.0)
     places = ((x, 0.0), middle, (-x1, y1), (-x2, y2))
@@ -145,7 +148,7 @@ def _read(gmsh: Any, names: dict[str, list[int]]) -> PlaneMesh:
 
 
 def plane_mesh(nodes: Floats, triangles: Ints, edges: dict[str, Ints]) -> PlaneMesh:
-    """A mesh whose triangles are counter-clockwise and whose edges have the body on the left."""
+    """Return a mesh; triangles are made counter-clockwise and edges have the body on their left."""
     x = nodes[triangles]
     a, b = x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]
     clockwise = a[:, 0] * b[:, 1] < a[:, 1] * b[:, 0]

@@ -1,12 +1,13 @@
-"""A plane-strain body of quadratic triangles that a rigid pin pulls: forces and tangent of a step.
+"""A plane-strain body of quadratic triangles pulled by a rigid pin: forces and tangent of a step.
 
-In small strain the shape stays; in finite strain each step is taken from the shape before it, with
-strain increments about the middle of the step, by which stress turns (Hughes and Winget), and
-equilibrium in the shape after it. Elastic strain is small in metals, so this rate form is good. The
-tangent is consistent but for the finite size of a step. Three quadrature points in a quadratic
-triangle do not lock: four unknowns of displacement against three of volume.
+In small strain the geometry does not change. In finite strain each step starts from the geometry
+before it. The strain increment is taken at the middle of the step, the stress rotates with the
+material (Hughes and Winget), and equilibrium holds in the geometry after the step. Elastic strain
+is small in metals, so this rate form is accurate. The tangent is consistent except for terms of the
+finite step size. Quadratic triangles with three quadrature points do not lock: there are four
+displacement unknowns for three volume constraints.
 
-The pin is a circle without friction; it presses points that are inside it, by a stiff spring.
+The pin is a frictionless circle. Points inside it are pushed out by a stiff spring.
 
 Source: T. J. R. Hughes, J. Winget, Int. J. Num. Meth. Eng. 15 (1980) 1862; S. W. Sloan, M. F.
 Randolph, Int. J. Num. Anal. Meth. Geomech. 6 (1982) 47, for elements that do not lock.
@@ -24,12 +25,12 @@ from assess.plastic.lug.bounds import QuadraticNodes
 from assess.plastic.lug.mesh import PlaneMesh
 from pinbase.arrays import Floats, Ints, Mask
 
-# Stiffness of the pin's surface over Young's modulus per radius; the load of a bore that flows
-# differs by less than 0.1 % from that with ten times as much.
+# Stiffness of the pin's surface, in Young's moduli per radius. With ten times this stiffness the
+# load of a yielding bore changes by less than 0.1 %.
 CONTACT_STIFFNESS = 20.0
-PLACES = np.full((3, 3), 1.0 / 6.0) + np.eye(3) / 2.0  # of quadrature points, in area coordinates
+PLACES = np.full((3, 3), 1.0 / 6.0) + np.eye(3) / 2.0  # quadrature points in area coordinates
 EDGE_PLACES, EDGE_WEIGHTS = np.polynomial.legendre.leggauss(3)
-# Quadratic functions at those of an edge: first end, last end, middle.
+# Quadratic shape functions at the quadrature points of an edge: first end, last end, middle.
 EDGE_SHAPES = np.stack(
     [
         EDGE_PLACES * (EDGE_PLACES - 1.0) / 2.0,
@@ -46,8 +47,9 @@ _PLANE = [0, 5, 5, 1]  # Voigt components of the entries xx, xy, yx, yy of a pla
 class PulledState:
     """The state after a step; lengths in radii of the bore.
 
-    nodes: (N, 2) where they are. elastic: (M, 3, 6) elastic strain. equivalent: (M, 3) plastic
-    strain. pin: how far it has moved. load: of the pin, N/m per radius (Pa), on the modelled half.
+    nodes: (N, 2) current positions. elastic: (M, 3, 6) elastic strain. equivalent: (M, 3)
+    equivalent plastic strain. pin: displacement of the pin. load: force of the pin on the modelled
+    half, N/m per radius (Pa).
     """
 
     nodes: Floats
@@ -58,7 +60,10 @@ class PulledState:
 
 
 class PulledBody:
-    """The half of a lug on a mesh, in radii of its bore, of an elastic-plastic material."""
+    """Half of a lug of an elastic-plastic material on a mesh; lengths in radii of its bore.
+
+    finite: whether strains are finite.
+    """
 
     def __init__(self, mesh: PlaneMesh, rule: FlowRule, finite: bool) -> None:
         self.rule, self.finite = rule, finite
@@ -81,15 +86,17 @@ class PulledBody:
         self._spring = CONTACT_STIFFNESS * rule.material.youngs_modulus
 
     def at_rest(self) -> PulledState:
-        """The state before the pin moves."""
+        """Return the state before the pin moves."""
         points = len(self.numbers), 3
         return PulledState(self.start, np.zeros((*points, 6)), np.zeros(points), 0.0, 0.0)
 
     def residual(
         self, before: PulledState, moved: Floats, pin: float
     ) -> tuple[Floats, sp.csc_matrix, PulledState, float]:
-        """Unbalanced forces (U,) of a step with displacements moved (N, 2) and the pin at a place,
-        the tangent (U, U), the state, and the size of the forces.
+        """Return the unbalanced forces (U,) at the end of a step, the tangent (U, U), the state,
+        and the size of the pin's forces.
+
+        moved: (N, 2) displacements in the step. pin: position of the pin after the step.
         """
         shape = before.nodes + moved if self.finite else self.start
         flow, elastic = self._flow(before, moved)
@@ -113,7 +120,7 @@ class PulledBody:
         return unbalanced, sp.csc_matrix(whole[free][:, free]), state, size
 
     def _flow(self, before: PulledState, moved: Floats) -> tuple[Flow, Floats]:
-        """The flow in a step, and the elastic strains after it."""
+        """Return the flow in a step, and the elastic strains after it."""
         middle = before.nodes + moved / 2.0 if self.finite else self.start
         gradients, _ = self._gradients(middle)
         slope = np.einsum("mki,mqkj->mqij", moved[self.numbers], gradients, optimize=True)
@@ -128,7 +135,7 @@ class PulledBody:
         return flow, trial - flow.plastic
 
     def _moduli(self, flow: Flow, stress: Floats) -> Floats:
-        """d(force)_ij / d(gradient)_kl at the points, (M, 3, 2, 2, 2, 2)."""
+        """Return d(force)_ij / d(gradient)_kl at the quadrature points, (M, 3, 2, 2, 2, 2)."""
         moduli = flow.tangent[..., _PLANE, :][..., _PLANE].reshape(*stress.shape[:2], 2, 2, 2, 2)
         if not self.finite:
             return np.asarray(moduli)
@@ -136,13 +143,15 @@ class PulledBody:
         def term(indices: str) -> Floats:
             return np.asarray(np.einsum(f"mq{indices[:2]},{indices[2:]}->mqijkl", stress, _EYE))
 
-        # Volume and gradients change with the shape; stress turns with the metal.
+        # Volume and gradients change with the geometry; the stress rotates with the material.
         out = moduli + term("ijkl") - term("iljk")
         out += (term("ljik") - term("kjil") - term("iklj") + term("iljk")) / 2.0
         return np.asarray(out)
 
     def _gradients(self, nodes: Floats) -> tuple[Floats, Floats]:
-        """Gradients (M, 3, 6, 2) of the functions of nodes, and weights (M, 3), in a shape."""
+        """Return the gradients (M, 3, 6, 2) of the shape functions, and the weights (M, 3), for
+        nodes at given positions.
+        """
         jacobian = np.einsum("mki,qka->mqia", nodes[self.numbers], self._slopes, optimize=True)
         determinant = np.linalg.det(jacobian)
         inverse = np.linalg.inv(jacobian)
@@ -150,18 +159,18 @@ class PulledBody:
         return gradients, determinant / 6.0
 
     def _contact(self, nodes: Floats, pin: float) -> tuple[Floats, Floats, float]:
-        """Forces (E, 3, 2) of the pin on the nodes of edges, the stiffness of its springs
-        (E, 3, 2, 3, 2), and its load.
+        """Return the forces (E, 3, 2) of the pin on the nodes of the edges, the stiffness
+        (E, 3, 2, 3, 2) of its springs, and the load of the pin.
         """
         chord = self.start[self.bore]
         at = np.einsum("qk,eki->eqi", EDGE_SHAPES, nodes[self.bore]) - [pin, 0.0]
         distance = np.linalg.norm(at, axis=-1)
         normal = at / distance[..., None]
-        if not self.finite:  # normals stay
+        if not self.finite:  # the normals do not change
             at_start = np.einsum("qk,eki->eqi", EDGE_SHAPES, chord)
             normal = at_start / np.linalg.norm(at_start, axis=-1)[..., None]
             distance = (at * normal).sum(axis=-1)
-        # Lengths of the reference: the pressure is per length of it.
+        # Lengths in the reference geometry, to which the pressure refers.
         length = np.linalg.norm(chord[:, 1] - chord[:, 0], axis=1)
         weight = length[:, None] * EDGE_WEIGHTS / 2.0
         inside = np.maximum(1.0 - distance, 0.0)
@@ -175,7 +184,9 @@ class PulledBody:
 
 
 def _turned(strain: Floats, half: Floats) -> Floats:
-    """Strains (M, Q, 6) after a rotation whose increment of spin is `half` (M, Q)."""
+    """Return strains (M, Q, 6) after the rotation of a step whose spin increment is `half` (M, Q),
+    by the midpoint rule of Hughes and Winget.
+    """
     angle = 2.0 * np.arctan(half / 2.0)
     c, s = np.cos(angle), np.sin(angle)
     x, y, xy = strain[..., 0], strain[..., 1], strain[..., 5]
@@ -194,7 +205,7 @@ def _nodes(mesh: PlaneMesh, space: QuadraticNodes) -> Floats:
 
 
 def _free(mesh: PlaneMesh, space: QuadraticNodes) -> Ints:
-    """Numbers of the unknowns: all but those across the axis and where the lug is held."""
+    """Return the numbers of the free unknowns: all but those across the axis and on held edges."""
     free: Mask = np.ones((space.count, 2), dtype=bool)
     free[space.of_edges(mesh.edges["axis"]), 1] = False
     free[space.of_edges(mesh.edges["held"])] = False
@@ -202,7 +213,9 @@ def _free(mesh: PlaneMesh, space: QuadraticNodes) -> Ints:
 
 
 def _local_slopes() -> Floats:
-    """Derivatives (3, 6, 2) of the functions by the first two area coordinates, at PLACES."""
+    """Return the derivatives (3, 6, 2) of the shape functions by the first two area coordinates, at
+    PLACES.
+    """
     slope = np.zeros((3, 6, 3))
     for i in range(3):
         slope[:, i, i] = 4.0 * PLACES[:, i] - 1.0

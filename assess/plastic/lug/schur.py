@@ -1,4 +1,4 @@
-"""The matrix A B A' of a cone program's rows A and a block-diagonal B, of one pattern always."""
+"""The matrix A B A' of a cone program's rows A and a block-diagonal B; its pattern is constant."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import scipy.sparse as sp
 
 from pinbase.arrays import Floats, Ints
 
-ROW_COMPLIANCE = 1e-12  # over the mean of the diagonal: some rows may depend on others
+ROW_COMPLIANCE = 1e-12  # relative to the mean diagonal; needed because rows may be dependent
 
 
 class SchurComplement:
-    """A linear map from the entries of B to those of A B A'.
+    """The linear map from the entries of B to the entries of A B A'.
 
     columns: P, Q, T (R, N) and C (R, L) of A. The entries of B are those of p with p, q with q, q
     with t, t with q, t with t, (N,) each, and of the loads, (L,).
@@ -40,7 +40,7 @@ class SchurComplement:
         self._diagonal = np.flatnonzero(entries // rows == self._indices)
 
     def matrix(self, blocks: Floats) -> sp.csr_matrix:
-        """A B A' of the entries of B."""
+        """Return A B A' for the entries of B."""
         data = np.asarray(self._map @ blocks)
         data[self._diagonal] += ROW_COMPLIANCE * data[self._diagonal].mean()
         shape = self._rows, self._rows
@@ -48,8 +48,9 @@ class SchurComplement:
 
 
 def _pairs(left: sp.csc_matrix, right: sp.csc_matrix) -> tuple[Ints, Ints, Floats]:
-    """Row of left times the number of rows plus row of right, column, and product of all pairs of
-    entries that share a column.
+    """Return key, column and product of all pairs of entries that share a column.
+
+    The key is the row of the left entry times the number of rows, plus the row of the right entry.
     """
     counts = np.diff(right.indptr)
     column = np.repeat(np.arange(left.shape[1]), np.diff(left.indptr))

@@ -12,19 +12,20 @@ from geometry import ArgumentError
 
 OFFSET = 0.002  # plastic strain at which the yield strength is measured
 MAX_EXPONENT = 0.6  # no metal hardens more
-# Plastic strains at the ends of straight pieces: the first is where flow begins, the last is larger
-# than any at which a lug carries its largest load.
+# Plastic strains at the ends of the linear pieces. Flow begins at the first; the last exceeds any
+# strain at which a lug carries its largest load.
 FIRST_STRAIN, LAST_STRAIN, PIECES = 1e-4, 3.0, 60
 
 
 def true_curve(material: Material) -> Material:
-    """The material with the power law of true stress, K e^n, that its two strengths define.
+    """Return the material with the power law of true stress, K e^n, that its two strengths define.
 
-    At a plastic strain of 0.002 it is the yield strength, and the largest engineering stress, at
-    e = n by Considere, is the ultimate strength: K n^n exp(-n). Nothing is fitted to lugs, and the
-    elongation at fracture is not used: it contains the neck.
+    The law gives the yield strength at a plastic strain of 0.002. Its largest engineering stress,
+    K n^n exp(-n) at e = n (Considere), is the ultimate strength. No value is fitted to lugs. The
+    elongation at fracture is not used, because it includes the neck.
 
-    Raises: ArgumentError where a strength is missing or the ultimate strength is not the larger.
+    Raises: ArgumentError if a strength is missing or no hardening exponent leads from one strength
+    to the other.
     """
     low, high = material.yield_strength, material.ultimate_strength
     if low is None or high is None:
@@ -46,16 +47,17 @@ def true_curve(material: Material) -> Material:
 
 
 def hardening_exponent(yield_strength: float, ultimate_strength: float) -> float:
-    """n of K e^n: ln(Rm / Re) = n (ln(n / 0.002) - 1), engineering strengths.
+    """Return n of K e^n from the engineering strengths: ln(Rm / Re) = n (ln(n / 0.002) - 1).
 
-    Raises: ArgumentError for strengths of which no metal hardens.
+    Raises: ArgumentError if the ultimate strength is not the larger one, or if n would exceed
+    MAX_EXPONENT.
     """
     ratio = math.log(ultimate_strength / yield_strength) if yield_strength > 0.0 else 0.0
 
     def excess(n: float) -> float:
         return n * (math.log(n / OFFSET) - 1.0) - ratio
 
-    # The left side rises from zero at e times the offset.
+    # The right side of the equation rises from zero at n = e times the offset.
     least = math.e * OFFSET
     if not 0.0 < ratio < excess(MAX_EXPONENT) + ratio:
         raise ArgumentError(

@@ -1,10 +1,9 @@
-"""The ultimate load of a lug: the largest force of a pin that moves until it falls, or the metal
-breaks.
+"""The ultimate load of a lug: the pin is displaced until its force falls or the metal breaks.
 
-Plane strain, finite strain, the true stress-strain curve, a rigid pin without friction. Two things
-end the rise of the load: the shape of the lug, whose metal behind the pin thins and bulges faster
-than it hardens, or a failure strain, if one is given, which the equivalent plastic strain reaches
-somewhere at the bore. The first needs no more than the tensile strengths.
+The model has plane strain, finite strain, the true stress-strain curve and a rigid, frictionless
+pin. Two things end the rise of the load: the shape of the lug, when the metal behind the pin thins
+and bulges faster than it hardens; or a failure strain, if one is given, when the equivalent plastic
+strain reaches it anywhere in the lug. The first needs only the tensile strengths.
 """
 
 from __future__ import annotations
@@ -27,21 +26,21 @@ from pinbase.dimensions import Length, Lengths
 ForcePerLength = Annotated[float, "force per length"]
 ForcesPerLength = Annotated[Floats, "force per length"]
 
-MESH_SIZES = 0.15, 0.1  # radii, of triangles at the bore: 3 and 6 s
+MESH_SIZES = 0.15, 0.1  # triangle sizes at the bore, in radii; they take 3 and 6 s
 # Steps of the pin, in radii.
 FIRST_STEP, MAX_STEP, MIN_STEP = 0.002, 0.03, 1e-5
-STEP_GROWTH = 1.4  # after a step of few iterations
+STEP_GROWTH = 1.4  # growth of the step after a step of few iterations
 FEW_ITERATIONS, MAX_ITERATIONS = 5, 15
-RESIDUAL_TOLERANCE = 1e-6  # over the forces of the pin
-DIVERGED = 1e4  # the same: beyond it Newton's method is given up
-MAX_TRAVEL = 1.5  # radii
-FALL = 0.015  # of the largest load: then it has been passed
+RESIDUAL_TOLERANCE = 1e-6  # relative to the forces of the pin
+DIVERGED = 1e4  # residual, relative to these forces, at which Newton's method is abandoned
+MAX_TRAVEL = 1.5  # largest displacement of the pin, in radii
+FALL = 0.015  # drop below the largest load, relative to it, that shows that the peak is passed
 
 
 @dataclass(frozen=True)
 class PullCurve:
-    """The pull of a pin: its displacement (S,), the load per thickness (S,) and the largest
-    equivalent plastic strain (S,).
+    """The load-displacement curve of a pin: its displacement (S,), the load per thickness (S,) and
+    the largest equivalent plastic strain (S,).
     """
 
     pin: Lengths
@@ -49,7 +48,9 @@ class PullCurve:
     strain: Floats
 
     def largest(self, failure_strain: float | None = None) -> tuple[float, float, float]:
-        """The largest load up to a failure strain, N/m, the pin's way there, m, and the strain."""
+        """Return the largest load up to a failure strain, N/m, the displacement of the pin there,
+        m, and the strain there.
+        """
         loads, ways, strains = self.load, self.pin, self.strain
         if failure_strain is not None and strains[-1] > failure_strain:
             last = int(np.argmax(strains > failure_strain))
@@ -66,9 +67,11 @@ class PullCurve:
 class LugUltimate:
     """The ultimate load per thickness of a lug, N/m.
 
-    ended_by: "shape": the load falls; "strain": the failure strain is reached before.
-    pin: how far it has moved. strain: the largest equivalent plastic strain then.
-    mesh_error: the difference of the two meshes over the load; of the numerics alone.
+    ended_by: "shape" if the load falls; "strain" if the failure strain is reached first.
+    pin: displacement of the pin at the ultimate load. strain: largest equivalent plastic strain at
+    that load.
+    mesh_error: the difference of the loads of the two meshes, relative to the load; covers the
+    numerical error only.
     curve: of the finer mesh.
     """
 
@@ -83,11 +86,11 @@ class LugUltimate:
 def lug_ultimate(
     lug: LugOutline, material: Material, failure_strain: float | None = None
 ) -> LugUltimate:
-    """The ultimate load of a lug.
+    """Return the ultimate load of a lug.
 
-    material: with its yield strength and true hardening curve, as of
+    material: with its yield strength and true hardening curve, as from
     assess.plastic.lug.true_curve.
-    failure_strain: equivalent plastic strain at which the metal breaks; None: it does not.
+    failure_strain: equivalent plastic strain at which the metal breaks; None if it does not break.
 
     Raises: ArgumentError for a material without yield strength; MeshError; SolveError.
     """
@@ -107,13 +110,14 @@ def pull(
     finite: bool = True,
     max_travel: float = MAX_TRAVEL,
 ) -> PullCurve:
-    """The pull of a lug until its load falls.
+    """Return the load-displacement curve of a lug until its load falls.
 
-    size: of triangles at the bore, radii. finite: finite strain; otherwise shape and the pin's
-    normals stay, and the load of a metal that does not harden tends to the limit load.
-    max_travel: radii.
+    size: triangle size at the bore, in radii. finite: whether strains are finite; otherwise the
+    geometry and the normals of the pin do not change, and the load of a metal without hardening
+    tends to the limit load.
+    max_travel: largest displacement of the pin, in radii.
 
-    Raises: ArgumentError; MeshError; SolveError where equilibrium is lost before the load falls.
+    Raises: ArgumentError; MeshError; SolveError if equilibrium is lost before the load falls.
     """
     body = PulledBody(half_lug_mesh(lug, size), FlowRule(material), finite)
     states = [body.at_rest()]
@@ -123,7 +127,7 @@ def pull(
         after, iterations = _step(body, now, rate * step, step)
         if after is None:
             step /= 2.0
-            rate = np.zeros_like(rate)  # a guess along the last step may be what failed
+            rate = np.zeros_like(rate)  # the predictor along the last step may be the cause
             if step < MIN_STEP:
                 raise SolveError(
                     f"the equilibrium of the pulled lug was lost after {now.pin:.3g} radii of the "
@@ -150,7 +154,9 @@ def _fallen(states: list[PulledState]) -> bool:
 def _step(
     body: PulledBody, before: PulledState, guess: Floats, step: float
 ) -> tuple[PulledState | None, int]:
-    """The state after a step of the pin, or None, and the iterations of Newton's method."""
+    """Return the state after a step of the pin (None if Newton's method fails), and the number of
+    iterations.
+    """
     moved = guess.copy()
     for iteration in range(MAX_ITERATIONS):
         unbalanced, tangent, state, size = body.residual(before, moved, before.pin + step)

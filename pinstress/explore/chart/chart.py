@@ -1,5 +1,5 @@
-"""The speed-accuracy chart of one pin: every model on a sequence of meshes compared with a
-reference.
+"""The speed-accuracy chart of one pin: every model on a sequence of meshes, compared with a
+reference solution.
 """
 
 from __future__ import annotations
@@ -54,11 +54,12 @@ ELEMENT_NAMES = {
 
 @dataclass(frozen=True)
 class ChartPlan:
-    """A plan of a chart, with all input read and found usable.
+    """The plan of a chart, with all input read and checked.
 
-    peak: maximum by `auto` on its first mesh.
-    beam_error: relative error of the beam model's own estimate.
-    chosen: for a pin in its lugs, the mesh of contact on which a run ends.
+    peak: maximum by the automatic choice of the model on its first mesh; for a pin in its lugs, the
+    maximum of a run.
+    beam_error: relative error that the beam model estimates for itself.
+    chosen: for a pin in its lugs, the mesh on which a run ends.
     """
 
     study: Study
@@ -116,7 +117,7 @@ def _require_stress(study: Study, peak: Maximum) -> None:
 
 
 def _plan_in_lugs(study: Study, task: Task, requirement: Requirement) -> ChartPlan:
-    """Return the plan for a pin in its lugs, solved as a run would."""
+    """Return the plan for a pin in its lugs, which is solved as in a run."""
     pin = body_of_revolution(task.pin)
     if pin is None:
         raise study.error(
@@ -151,12 +152,12 @@ def chart(
 ) -> Chart:
     """Solve all models on their meshes and return the chart.
 
-    measure: solves one mesh and measures it.
-    meshes: number of meshes for each solid element, by default as many as are quick.
-    runs: number of runs; the times are their medians.
+    measure: a function that solves one mesh and measures time and memory.
+    meshes: number of meshes for each solid element, by default as many as can be solved quickly.
+    runs: number of runs of each mesh; times are medians over the runs.
     calculix: whether CalculiX also solves a pin in its lugs.
 
-    Raises: SolveError when there is no reference.
+    Raises: SolveError if there is no reference.
     """
     about, behind = len(HARMONIC_LEVELS) + 3 * (meshes or SOLID_MESHES) + 4, 0
 
@@ -195,9 +196,9 @@ def _joined(
     reference: tuple[ModelMesh | JointRung, MeshHistory],
     cells: float = 0.0,
 ) -> Chart:
-    """Return the chart of the meshes that were solved.
+    """Return the chart of the solved meshes.
 
-    cells: part of the reference's error that comes from cells of contact, relative.
+    cells: relative part of the reference's error that is due to the contact cells.
     """
     at, seen = reference
     stress, best = plan.study.system.factor("stress"), seen.results[-1]
@@ -241,7 +242,7 @@ def _joined(
 
 
 def _note(peak: Maximum) -> str:
-    """Explain that the maximum is one of a part of the pin only; empty where it is not."""
+    """Return a note if the maximum is only that outside the excluded zones; else empty."""
     governing = [zone for zone in peak.singular_at if zone.governs]
     if not governing:
         return ""

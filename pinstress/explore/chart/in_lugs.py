@@ -1,5 +1,5 @@
-"""The mesh sequences of a chart of a pin in its lugs: contact on several cells and meshes, the beam
-on foundations and, where it is requested, CalculiX.
+"""The mesh sequences of a chart of a pin in its lugs: contact on several sets of cells and meshes,
+the beam on foundations and, if requested, CalculiX.
 """
 
 from __future__ import annotations
@@ -30,25 +30,27 @@ CALCULIX_MESHES = (*HALF_MODEL_MESHES, Fineness(sectors=32, layers=3, eye=2))
 
 
 def rings_of(problem: JointProblem, cells: Resolution) -> int:
-    """Return the number of rings of cells in all bands."""
+    """Return the number of rings of contact cells in all bands."""
     bands = [(problem.pin.band(lug.connection), lug.edge_radius) for lug in problem.lugs]
     ends = [ring_ends(band, radius, cells.rings, cells.beside) for band, radius in bands]
     return sum(len(x) - 1 for x in ends)
 
 
 def sets_of(problem: JointProblem) -> list[Resolution]:
-    """Return the sets of cells that can be solved, at least two; the last is for the reference."""
+    """Return the sets of contact cells that are not too many to solve, at least two; the last is
+    for the reference.
+    """
     few = [x for x in CHART_RESOLUTIONS if rings_of(problem, x) * x.sectors <= MAX_CELLS]
     return few if len(few) > 1 else list(CHART_RESOLUTIONS[:2])
 
 
 def contact_rung(cells: Resolution, level: int) -> JointRung:
-    """Return a mesh of contact, named after its cells."""
+    """Return a rung of the contact model, named after its cells."""
     return JointRung("contact", f"{cells.rings} × {cells.sectors} cells a lug", level, cells)
 
 
 def chosen_in_lugs(problem: JointProblem, peak: Maximum, joint: JointResult) -> JointRung:
-    """Return the mesh on which a run ends."""
+    """Return the rung of the chart that is nearest to the one on which a run ends."""
     if joint.model == "foundation":
         return JointRung("foundation", "Timoshenko beam")
     rings = sum(len(band.line_load) for band in joint.bands)
@@ -71,11 +73,11 @@ def climb_in_lugs(climb: Climb, chosen: JointRung, calculix: bool) -> None:
 
 
 def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
-    """Solve contact on the finest cells and finer meshes as the reference.
+    """Solve contact on the finest cells and on finer meshes, as the reference.
 
-    Returns the last mesh, the history, and the part of its error from the cells, relative.
+    Return the last mesh, the mesh history, and the relative part of its error due to the cells.
 
-    Raises: SolveError where it cannot be solved.
+    Raises: SolveError if the reference cannot be solved.
     """
     assert isinstance(climb.problem, JointProblem)
     coarser, cells = sets_of(climb.problem)[-2:]
@@ -90,7 +92,7 @@ def contact_reference(climb: Climb) -> tuple[JointRung, MeshHistory, float]:
         results.append(measured.result)
     below = [m.result for r, m in climb.done if r == contact_rung(coarser, REFERENCE_LEVELS[0])]
     error = math.inf
-    if below and below[0]:  # of first order at least
+    if below and below[0]:  # convergence with the cells is at least of first order
         step = abs(results[0].maximum / below[0].maximum - 1.0)
         error = step / (cells.rings / coarser.rings - 1.0)
         error = max(error, unresolved(cells.highest * climb.problem.half_angle))

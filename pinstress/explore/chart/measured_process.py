@@ -25,10 +25,10 @@ MIN_MEASURED_MEMORY = 0.1  # MB: less cannot be distinguished from the libraries
 
 @dataclass(frozen=True)
 class MeasureLimits:
-    """Limits on measurements.
+    """The limits on a measurement.
 
-    seconds: of a process in all, s.
-    memory: of a process above its libraries, MB.
+    seconds: total time of a process, s.
+    memory: memory of a process in addition to its libraries, MB.
     """
 
     seconds: float = 120.0
@@ -39,12 +39,12 @@ class MeasureLimits:
 class Measured:
     """A measured solution.
 
-    result: maximum on the mesh, None where it `failed`, for that reason.
-    seconds: the median of the runs, s, each from the mesh to the maximum over the motion, without
+    result: maximum on the mesh; None if the solution failed, for the reason `failed`.
+    seconds: the median time of the runs, s, from the mesh to the maximum over the motion, without
     the start of the interpreter and imports.
-    memory: the largest during the first run above the process with its libraries loaded, MB.
-    bare: memory of that process, MB.
-    over: whether it failed because it passed a limit, as finer meshes would.
+    memory: the largest memory during the first run, in addition to `bare`, MB.
+    bare: memory of the process with its libraries loaded, MB.
+    over: whether the solution failed because it exceeded a limit; finer meshes would, too.
     """
 
     result: MeshMaximum | None
@@ -60,7 +60,7 @@ class MeasureJob:
     """A mesh of a model to be solved `runs` times.
 
     before: results on coarser meshes (fea.solve.single_mesh).
-    reference: whether it may take any time.
+    reference: whether the time is not limited.
     """
 
     problem: Problem | JointProblem
@@ -74,7 +74,7 @@ Measure = Callable[[MeasureJob], Measured]
 
 
 def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
-    """Solve a mesh in its own process, a new Python, which is ended when it passes a limit."""
+    """Solve a mesh in a new Python process, which is ended when it exceeds a limit."""
     seconds = math.inf if job.reference else limits.seconds
     start, passed = time.monotonic(), ""
 
@@ -95,8 +95,9 @@ def measure(job: MeasureJob, limits: MeasureLimits) -> Measured:
 
 
 def memory(pid: int | str, what: str) -> float:
-    """Return the memory of a process, MB: "VmRSS", the present one, or "VmHWM", the largest so
-    far.
+    """Return the memory of a process, MB.
+
+    what: "VmRSS" for the present memory, "VmHWM" for the largest so far.
     """
     try:
         match = re.search(rf"{what}:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())
@@ -108,10 +109,10 @@ def memory(pid: int | str, what: str) -> float:
 def climb(job: MeasureJob, tell: Tell) -> Measured:
     """Solve a mesh in this process, which must do nothing else.
 
-    tell: called with the memory of the process before, MB.
+    tell: called with the memory of the process before the solution, MB.
     """
-    os.setsid()  # so that programs that it runs are ended with it
-    with suppress(ImportError):  # none of their time and memory is the model's
+    os.setsid()  # so that programs started by this process are ended with it
+    with suppress(ImportError):  # imported here, because their time and memory must not count
         import gmsh  # noqa: F401
         import pymetis  # noqa: F401
         from cvxopt import cholmod  # noqa: F401
@@ -119,7 +120,7 @@ def climb(job: MeasureJob, tell: Tell) -> Measured:
     bare, spent, peak = memory("self", "VmRSS"), [], 0.0
     tell(f"{bare:.0f}")
     with suppress(OSError):
-        Path("/proc/self/clear_refs").write_text("5")  # forgets what imports took for a moment
+        Path("/proc/self/clear_refs").write_text("5")  # resets the peak, which imports raised
     for run in range(job.runs):
         start = time.perf_counter()
         maximum = _result(job)

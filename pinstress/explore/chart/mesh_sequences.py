@@ -1,4 +1,4 @@
-"""The mesh sequences of a chart: which meshes are solved, how far they go, and the references."""
+"""The mesh sequences of a chart: the meshes that are solved, their limits, and the references."""
 
 from __future__ import annotations
 
@@ -19,20 +19,21 @@ from pinstress.explore.chart.single_joint import JointProblem, JointRung
 
 HARMONIC_LEVELS = (-4, -2, 0, 1, 2, 3)  # levels of meshes (fea.solve.single_mesh)
 FIRST_SOLID_LEVEL: dict[Element, int] = {"linear": -1, "straight": -3, "curved": -3}
-SOLID_MESHES, MIN_SOLID_MESHES = 5, 4  # meshes of an element, however large
-MAX_CHARTED_UNKNOWNS = 150_000  # unknowns of a solid that is charted
-MAX_UNKNOWNS_BELOW_REFERENCE = 50_000  # the same of one that has no other reference
+# Default and smallest number of meshes of a solid element, however large
+SOLID_MESHES, MIN_SOLID_MESHES = 5, 4
+MAX_CHARTED_UNKNOWNS = 150_000  # largest number of unknowns of a charted solid
+MAX_UNKNOWNS_BELOW_REFERENCE = 50_000  # the same if only a finer solid can be the reference
 MAX_REFERENCE_UNKNOWNS = 400_000
-REFERENCE_UNKNOWNS_RATIO = 10.0  # times the unknowns of the finest that is charted
+REFERENCE_UNKNOWNS_RATIO = 10.0  # unknowns of the reference over those of the finest charted mesh
 MIN_REFERENCE_MESHES = 3
 ADAPTIVE_MODELS = "harmonic", LOCAL_MODEL, "contact"  # finer meshes where stress is high
 
 
 @dataclass
 class Climb:
-    """Meshes solved so far, in their order.
+    """The sequence of meshes solved so far.
 
-    auto: the model that `auto` chooses.
+    auto: the model that is chosen automatically.
     """
 
     problem: Problem | JointProblem
@@ -44,10 +45,10 @@ class Climb:
     done: list[tuple[ModelMesh | JointRung, Measured]] = field(default_factory=list)
 
     def to(self, rung: ModelMesh | JointRung, keep: bool = True) -> Measured:
-        """Solve a mesh; `keep` it as a point of the chart."""
+        """Solve a mesh; keep: whether it becomes a point of the chart."""
         self.tell(f"{rung.model} model")
         below = self.results(rung) if rung.model in ADAPTIVE_MODELS and rung.level > 0 else ()
-        if not keep:  # refined everywhere: it is what the others are measured by
+        if not keep:  # the reference is refined everywhere
             below = tuple(replace(result, high=()) for result in below)
         runs = self.runs if keep and rung.model != "calculix" else 1
         measured = self.measure(
@@ -58,22 +59,22 @@ class Climb:
         return measured
 
     def drop_repeated(self) -> None:
-        """Leave out the last mesh but one where the last is the same, which places that need small
-        elements keep from being coarser.
+        """Drop the last mesh but one if the last has the same number of unknowns. This happens
+        where places that need small elements keep a mesh from being coarser.
         """
         (_, one), (_, two) = self.done[-2:]
         if one.result and two.result and one.result.unknowns == two.result.unknowns:
             del self.done[-2]
 
     def results(self, like: ModelMesh | JointRung) -> tuple[MeshMaximum, ...]:
-        """Return the results of the same model and element, from a run's first mesh on."""
+        """Return the results of the same model and element, from the first mesh of a run on."""
         return tuple(
             m.result for r, m in self.done
             if (r.model, r.element) == (like.model, like.element) and r.level >= 0 and m.result
         )  # fmt: skip
 
     def enough(self, model: str, results: tuple[MeshMaximum, ...]) -> bool:
-        """Return whether a run of the model would end here."""
+        """Whether a run of the model would end here."""
         return accurate_enough(self.requirement, self.problem.material, self.seen(model, results))
 
     def seen(self, model: str, results: tuple[MeshMaximum, ...], first: int = 0) -> MeshHistory:
@@ -85,7 +86,7 @@ class Climb:
 
 
 def climb_harmonic(climb: Climb) -> None:
-    """Solve the usual levels, and further ones to where `auto` ends."""
+    """Solve the usual levels, and further ones until the level at which a run would end."""
     for level in HARMONIC_LEVELS:
         measured = climb.to(ModelMesh("harmonic", level=level))
         climb.drop_repeated()
@@ -107,11 +108,11 @@ def climb_local(climb: Climb) -> None:
 
 
 def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
-    """Solve finer and finer meshes, as many as requested or until they get large, or pass a
-    limit.
+    """Solve increasingly fine meshes: as many as requested, or until they become too large or
+    exceed a limit.
     """
     pin = climb.problem.pin
-    step = 2 if pin.meshed else 1  # it can only be halved
+    step = 2 if pin.meshed else 1  # a given mesh can only be refined by halving its elements
     first = 0 if pin.meshed else FIRST_SOLID_LEVEL[element]
     most = MAX_CHARTED_UNKNOWNS if pin.revolved else MAX_UNKNOWNS_BELOW_REFERENCE
     for k in range(meshes or SOLID_MESHES):
@@ -129,7 +130,11 @@ def climb_solid(climb: Climb, element: Element, meshes: int | None) -> None:
 
 
 def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """Solve meshes finer than the finest that is charted, until one is an order larger."""
+    """Solve meshes finer than the finest charted one, until one is larger by an order of
+    magnitude, and return the last mesh and the mesh history.
+
+    Raises: SolveError if a mesh cannot be solved.
+    """
     level, charted = _finest(climb, "harmonic")
     results: list[MeshMaximum] = []
     while (
@@ -150,9 +155,9 @@ def harmonic_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
 
 
 def local_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """Solve one mesh more than is charted, which has nearly twice the unknowns of the last one.
+    """Solve one mesh beyond the charted ones, with nearly twice the unknowns of the last one.
 
-    Raises: SolveError where it cannot be solved.
+    Raises: SolveError if it cannot be solved.
     """
     level, charted = _finest(climb, LOCAL_MODEL)
     finer = ModelMesh(LOCAL_MODEL, level=level + 1)
@@ -165,7 +170,11 @@ def local_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
 
 
 def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
-    """Solve the solid model on finer meshes than are charted, as far as its unknowns allow."""
+    """Solve the solid model on finer meshes than the charted ones, as far as the number of unknowns
+    allows.
+
+    Raises: SolveError if no finer mesh could be solved.
+    """
     level, charted = _finest(climb, "solid")
     results = list(charted)
     step = 2 if climb.problem.pin.meshed else 1
@@ -189,7 +198,7 @@ def solid_reference(climb: Climb) -> tuple[ModelMesh, MeshHistory]:
 def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
     """Return the finest level of a model's best element, and all its mesh results.
 
-    Raises: SolveError when there is none.
+    Raises: SolveError if there is none.
     """
     of_it = [(r.level, m) for r, m in climb.done if r.model == model and r.element == "curved"]
     results = tuple(m.result for _, m in of_it if m.result)
@@ -202,8 +211,8 @@ def _finest(climb: Climb, model: str) -> tuple[int, tuple[MeshMaximum, ...]]:
 
 
 def chosen(climb: Climb) -> ModelMesh | JointRung | None:
-    """Return the mesh where `auto` ends; None where it goes on to finer meshes than are solved
-    here.
+    """Return the mesh on which a run with the automatic choice ends; None if that run continues to
+    finer meshes than are solved here.
     """
     model = climb.auto
     if model == "beam":

@@ -1,10 +1,10 @@
-"""The maximum on one mesh of one model of a pin in its lugs, for comparisons of models
-(fea.solve.single_mesh for other pins).
+"""The maximum on one mesh of one model of a pin in its lugs, for comparisons of models; for other
+pins see fea.solve.single_mesh.
 
-All models are compared by the same number, that of a row: the larger of surface and section
-(fea.core.places). The surface is read where lugs leave it free, but for the pin's own
-singularities: by the contact of the answer, that of other cells by their own, CalculiX's by its
-pressed nodes.
+All models are compared by the number of a row: the larger of the surface and the section stress
+(fea.core.places). The surface stress is read where the surface is free of lugs, outside the pin's
+own singularities. Each contact solution determines the free surface by its own contact, CalculiX by
+its pressed nodes.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ DEFAULT_RESOLUTION = Resolution()
 
 @dataclass(frozen=True)
 class JointProblem:
-    """A pin in its lugs in one case.
+    """A pin in its lugs in one load case.
 
     loads: forces of the links.
-    governing: number of the instant with the largest stress, the only one that CalculiX solves.
+    governing: number of the instant with the largest stress; CalculiX solves only this one.
     distance: excluded distance, as in fea.solve.solve.
     """
 
@@ -60,7 +60,7 @@ class JointProblem:
 
     @cached_property
     def half_angle(self) -> float:
-        """Return the half angle of contact at the governing instant, rad, which rough cells tell.
+        """The half angle of contact at the governing instant, rad, by a solution on rough cells.
 
         Raises: MeshError, SolveError.
         """
@@ -70,7 +70,7 @@ class JointProblem:
 
     @cached_property
     def singularities(self) -> tuple[Zone, ...]:
-        """Return the zones in which stress is not read."""
+        """The zones in which stress is not read."""
         whole = on_structure(self.pin, self.lugs)
         none = PinLoads(self.loads.case, (), np.zeros((1, 0, 3)))
         return singularities_of(whole, self.material, (), (none,), self.distance)
@@ -81,8 +81,8 @@ class JointRung:
     """A mesh of a model.
 
     level: as in fea.solve.single_mesh.ModelMesh.
-    cells: cells of contact.
-    fineness: fineness of CalculiX's mesh.
+    cells: number of contact cells, for the contact model.
+    fineness: fineness of CalculiX's mesh, for CalculiX.
     """
 
     model: Literal["contact", "foundation", "calculix"]
@@ -99,7 +99,7 @@ def joint_result_on(
 
     before: results on coarser meshes, as in fea.solve.single_mesh.
 
-    Raises: MeshError, SolveError; ValueError where a model cannot solve the problem; CalculixError.
+    Raises: MeshError, SolveError; ValueError if a model cannot solve the problem; CalculixError.
     """
     if rung.model == "calculix":
         return _calculix(problem, rung)

@@ -1,8 +1,8 @@
-"""Probabilities of failure of a study's pins, found in four ways that check each other.
+"""Probabilities of failure of a study's pins, by methods that check each other.
 
-Plain sampling decides where enough samples fail; FORM finds where failure is most likely; designs
-sampled about these points weight far fewer of them into small probabilities. All probabilities come
-from designs that were solved as a run solves them: nothing is fitted or interpolated.
+Plain sampling is enough where enough samples fail. FORM finds the points where failure is most
+likely. Importance sampling about these points estimates small probabilities from far fewer designs.
+All probabilities come from designs that were solved as in a run: nothing is fitted or interpolated.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MAX_SEARCH_STARTS = 3  # failing samples from which further design points are sought
-MAX_DIRECTION_COSINE = 0.7  # cosine below which a sample's direction is another
-# Standard deviations beyond the design points: where others are looked for
+MAX_DIRECTION_COSINE = 0.7  # two directions with a smaller cosine count as different
+# Distance beyond the nearest design point at which others are sought, in standard deviations
 SEARCH_DISTANCE_BEYOND = 1.0
-MAX_CENTRES = 40  # of importance sampling
+MAX_CENTRES = 40  # centres of importance sampling
 
 
 def assess(
@@ -73,11 +73,12 @@ def assess(
     cases: Sequence[str] | None = None,
     cluster: Cluster | None = None,
 ) -> Reliability:
-    """Assess the pins of a study in its cases.
+    """Assess the reliability of a study's pins in its load cases.
 
     nominal: results of the study as it is.
     jobs: number of processes that solve samples.
-    cluster: solves them instead; what it has solved is kept in the user's cache.
+    cluster: solves the samples instead of local processes; solved designs are kept in the user's
+    cache.
 
     Raises: InputError for a study without random numbers or without strengths.
     """
@@ -131,9 +132,9 @@ def _assessed_rows(
     shares: list[list[tuple[Spread, Spread]]] | None,
     nominal: Results,
 ) -> list[AssessedRow]:
-    """Return the rows of the study, after that of all of them together where there are several.
+    """Return the rows of the study; if there are several, the row of the system comes first.
 
-    shares: Sobol indices of each row and of all, None for correlated numbers.
+    shares: Sobol indices of each row and, last, of the system; None for correlated numbers.
     """
     rows = {(p.pin, p.case): p for p in nominal.pins}
     assessed = []
@@ -149,7 +150,7 @@ def _assessed_rows(
 
 
 def _correlations(study: Study) -> tuple[str, ...]:
-    """Return the correlations of the study's numbers, as text."""
+    """Return the correlations between the study's numbers, as text."""
     vary = study.table.vary
     assert vary is not None
     return tuple(f"{c.between[0]} and {c.between[1]}: {c.coefficient:g}" for c in vary.correlations)
@@ -157,7 +158,7 @@ def _correlations(study: Study) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class _Form:
-    """FORM's result of a row, the points about which to sample, and the nearest design point."""
+    """The FORM result of a row, its centres for importance sampling, its nearest design point."""
 
     result: FirstOrder
     centres: tuple[Array, ...] = ()
@@ -171,7 +172,7 @@ def _first_orders(
     sampled: Sample,
     cases: Sequence[str] | None,
 ) -> list[_Form]:
-    """Return FORM's results of all rows; for each row only its pin is solved."""
+    """Return the FORM results of all rows; for each row only its own pin is solved."""
     table = designs.evaluator.table
     forms: dict[tuple[str, str], _Form] = {}
     for pin in dict.fromkeys(pin for pin, _ in table):
@@ -189,7 +190,11 @@ def _first_orders(
 def first_order(
     designs: SolvedDesigns, row: int, starts: list[Array], settings: ReliabilityTable
 ) -> _Form:
-    """Find design points of a row from the mean and from other starts in other directions."""
+    """Return the FORM result of a row.
+
+    Design points are sought from the mean, from given starts, and from failing points farther out
+    (`_failing_beyond`), as long as their directions differ from those of the known points.
+    """
     size = designs.space.size
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, settings.factor)
@@ -214,8 +219,8 @@ def first_order(
 
 
 def _beneath(designs: SolvedDesigns, row: int, settings: ReliabilityTable) -> tuple[Array, ...]:
-    """Return the points where excessive stress beneath contact is most likely, for sampling there
-    too.
+    """Return the point where excessive stress beneath contact is most likely, as a further centre
+    of sampling; empty if none is found.
     """
     close = NOISY_CLOSENESS if any(map(shapes, designs.evaluator.numbers)) else SMOOTH_CLOSENESS
     limit = designs.limit(row, settings.factor, deep=True)
@@ -224,9 +229,10 @@ def _beneath(designs: SolvedDesigns, row: int, settings: ReliabilityTable) -> tu
 
 
 def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
-    """Return starts of the search for design points of a row.
+    """Return starts for the search of a row's design points.
 
-    They are samples that fail, nearest to the mean first, in different directions; else the worst.
+    The starts are failing samples in different directions, the nearest to the mean first. If no
+    sample fails, the only start is the worst sample.
     """
     u, used = sampled.draws.u, sampled.answers.used[:, row]
     if np.isnan(used).all():
@@ -248,7 +254,10 @@ def starts_of(sampled: Sample, row: int, factor: float) -> list[Array]:
 def weighted_sample(
     designs: SolvedDesigns, centres: list[Array], settings: ReliabilityTable
 ) -> Sample | None:
-    """Solve designs about the centres (d,); return None without centres or samples in the study."""
+    """Solve designs sampled about the centres (d,).
+
+    Return None if there are no centres or the study requests no such samples.
+    """
     separate: list[Array] = []
     for centre in sorted(centres, key=lambda c: float(np.linalg.norm(c))):
         if all(np.linalg.norm(centre - other) > 0.5 for other in separate):
@@ -277,7 +286,7 @@ def _indices(
 def _search(
     points: list[DesignPoint], starts: Iterable[Array], limit: LimitState, close: Closeness
 ) -> None:
-    """Add the design points from starts in other directions than those that are known."""
+    """Add the design points found from starts in other directions than the known points."""
     for start in starts:
         known = [p.direction @ start for p in points if not p.why]
         if all(cosine < MAX_DIRECTION_COSINE * float(np.linalg.norm(start)) for cosine in known):
@@ -285,8 +294,8 @@ def _search(
 
 
 def _failing_beyond(limit: LimitState, known: list[DesignPoint], size: int) -> Iterable[Array]:
-    """Return points (d,) that fail farther out than the nearest design point, along all axes and
-    opposite to it: further design points may be near them that no sample shows.
+    """Return failing points (d,) beyond the distance of the nearest design point, along all axes
+    and opposite to it. Design points that no sample reveals may lie near them.
     """
     if not known or known[0].index <= 0.0:
         return ()

@@ -1,4 +1,4 @@
-"""The factors of safety of many designs of a study with random numbers."""
+"""The safety factors of many designs of a study with random numbers."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from pinstress.study.reading.file import Study
 Array = NDArray[np.float64]
 
 MAX_JOB_DESIGNS = 100
-JOBS_PER_PROCESS = 4  # for each process, so that all end at about the same time
-# Designs that this process solves itself, as FORM's, one step after another
+JOBS_PER_PROCESS = 4  # so that all processes end at about the same time
+# Up to so many designs are solved in this process, such as those of one FORM iteration
 MAX_SERIAL_DESIGNS = 30
 
 
-Marginal = Callable[[Array], Array]  # values at standard normal deviates
+Marginal = Callable[[Array], Array]  # from standard normal deviates to values of a variable
 Elsewhere = Callable[[Array, Callable[[int], None]], list[list[DesignRow]]]
 
 
@@ -33,10 +33,10 @@ Elsewhere = Callable[[Array, Callable[[int], None]], list[list[DesignRow]]]
 class NormalSpace:
     """A space of d random variables, each a function of its own standard normal deviate.
 
-    Normal variables may be correlated: a linear map of independent ones (the Nataf transformation,
-    which is exact for normal variables). All others are independent.
+    Normal variables may be correlated; they are a linear map of independent deviates (the Nataf
+    transformation, which is exact for normal variables). All other variables are independent.
 
-    lower: L (d, d) with L L^T the correlation of the deviates; None where all are independent.
+    lower: L (d, d) with L L^T the correlation matrix of the deviates; None if all are independent.
     """
 
     marginals: tuple[Marginal, ...]
@@ -52,10 +52,10 @@ class NormalSpace:
         return np.stack([at(z[:, i]) for i, at in enumerate(self.marginals)], axis=1)
 
     def importance(self, direction: Array) -> Array:
-        """Return the importance of each variable for a design point in this unit direction.
+        """Return the importance (d,) of each variable for a design point in a unit direction.
 
-        They are squares (d,) of sum one; with correlation, of the variables' own deviates (Der
-        Kiureghian's gamma).
+        The importances are squared direction cosines with a sum of 1. With correlation they refer
+        to the variables' own deviates (Der Kiureghian's gamma).
         """
         if self.lower is not None:
             direction = np.linalg.lstsq(self.lower.T, direction)[0].astype(np.float64)
@@ -66,14 +66,14 @@ class NormalSpace:
 
 @dataclass(frozen=True)
 class Answers:
-    """Answers of n designs for each of r rows.
+    """The results of n designs for each of r rows.
 
-    used: (n, r), one over the factor of safety, NaN where there is no result.
-    errors: (n, r) of the stress, relative.
-    deep: (n, r), as `used`, or the value for the stress beneath contact with its error, if that is
-    larger, on which a row then depends.
-    unbounded: (n, r) whether the stress is unbounded where it governs; `used` is then that outside
-    the singular zones.
+    used: (n, r) utilisation, the reciprocal of the safety factor; NaN where there is no result.
+    errors: (n, r) relative error of the stress.
+    deep: (n, r) the larger of `used` and the utilisation by the stress beneath contact with its
+    error. If the second is larger, the outcome of the row depends on it.
+    unbounded: (n, r) whether the governing stress is unbounded; `used` is then that outside the
+    singular zones.
     loose: (n, r) whether the pin comes loose at the temperature of the case.
     """
 
@@ -85,14 +85,14 @@ class Answers:
 
     @property
     def factors(self) -> Array:
-        """Return the factors of safety (n, r), infinite without stress."""
+        """The safety factors (n, r), infinite without stress."""
         with np.errstate(divide="ignore"):
             return np.asarray(1.0 / self.used)
 
     @property
     def system(self) -> Answers:
-        """Return the answers of the row with the largest use, as (n, 1); unknown, unbounded, or
-        loose where any row is.
+        """The results of the system, (n, 1): those of the row with the largest utilisation. They
+        are unknown, unbounded or loose if those of any row are.
         """
         worst = np.argmax(np.where(np.isnan(self.used), np.inf, self.used), axis=1)[:, None]
         used, errors = (np.take_along_axis(x, worst, axis=1) for x in (self.used, self.errors))
@@ -103,13 +103,13 @@ class Answers:
 
     @property
     def depends(self) -> NDArray[np.bool_]:
-        """Return for each row (r,) whether the stress beneath contact ever governs."""
+        """Whether the stress beneath contact governs in any design, for each row, (r,)."""
         return np.asarray((self.deep > self.used).any(axis=0))
 
 
 def for_values(study: Study) -> Study:
-    """Return the study with the goal "value": deciding the required factor says little of stress
-    itself, and probabilities need numbers.
+    """Return the study with the goal "value". With the goal to decide the required factor the
+    stress itself remains inaccurate, but probabilities need its value.
     """
     if study.table.analysis.goal == "value":
         return study
@@ -132,13 +132,14 @@ def random_numbers(study: Study) -> tuple[tuple[Parameter, ...], NormalSpace]:
 
 
 class SolvedDesigns:
-    """Solve the designs of a study at standard normal u.
+    """The solver of a study's designs at points in standard normal space.
 
     jobs: number of parallel processes.
-    elsewhere: solves many designs on other computers instead, as their rows, from their values
-    (n, d) in SI; it is given a function to call with the number of designs that are solved.
-    solved: number of designs by purpose.
-    reasons: why rows have no result, with their number.
+    elsewhere: a function that solves many designs on other computers and returns their rows. Its
+    arguments are the values (n, d), SI, and a function that it calls with the number of designs
+    solved so far.
+    solved: number of solved designs by purpose.
+    reasons: number of designs by the reason why a row has no result.
     """
 
     def __init__(
@@ -154,13 +155,16 @@ class SolvedDesigns:
         self._jobs, self._progress, self._elsewhere = jobs, progress, elsewhere
 
     def of_pin(self, evaluator: Evaluator) -> SolvedDesigns:
-        """Return the same for the rows of one pin, counted together."""
+        """Return a solver for the rows of one pin that shares the counts with this one."""
         designs = SolvedDesigns(evaluator, self.space, 1, self._progress)
         designs.solved, designs.reasons = self.solved, self.reasons
         return designs
 
     def at(self, u: Array, purpose: str) -> Answers:
-        """Solve designs u (n, d) and return their answers."""
+        """Solve the designs at u (n, d) and return their results.
+
+        purpose: the name under which the designs are counted.
+        """
         self.solved[purpose] += len(u)
         values = self.space.physical(u)
         if self._elsewhere is not None and len(u) > MAX_SERIAL_DESIGNS:
@@ -186,9 +190,9 @@ class SolvedDesigns:
         self._progress(_name(purpose, count, total), count / total)
 
     def limit(self, row: int, factor: float, deep: bool = False) -> LimitState:
-        """Return the limit state of a row: one less factor times use, negative where it fails.
+        """Return the limit state of a row: 1 - factor * utilisation, negative where it fails.
 
-        deep: whether it is negative also where the row depends on stress beneath contact.
+        deep: whether the stress beneath contact counts as well.
         """
 
         def at(u: Array) -> Array:
@@ -233,7 +237,9 @@ def _used(row: DesignRow) -> float:
 
 
 def _beneath(row: DesignRow) -> float:
-    """Return the stress beneath contact, with its error, over the row's stress; 0 without any."""
+    """Return the ratio of the stress beneath contact, with its error, to the row's stress; 0
+    without contact.
+    """
     if row.beneath is None or not row.max_von_mises:
         return 0.0
     return (row.beneath + (row.beneath_error or 0.0)) / row.max_von_mises

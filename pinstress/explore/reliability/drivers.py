@@ -1,4 +1,4 @@
-"""Sobol indices of the factors of safety, which show what drives the risk."""
+"""Sobol indices of the safety factors, which show what drives the risk."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from reports.data.reliability import Spread
 
 Array = NDArray[np.float64]
 
-SCRAMBLED_SETS = 8  # independently scrambled, from whose scatter the intervals come
+SCRAMBLED_SETS = 8  # independently scrambled sets, whose scatter gives the confidence intervals
 
 
 def base_samples(samples: int) -> int:
-    """Return the size of each set, a power of two; zero if there are fewer than a set needs."""
+    """Return the size of each set, a power of two; 0 if there are too few samples."""
     size = samples // SCRAMBLED_SETS
     return 2 ** (size.bit_length() - 1) if size >= 2 else 0
 
@@ -26,12 +26,12 @@ def base_samples(samples: int) -> int:
 def indices(
     factors: Callable[[Array], Array], size: int, base: int, seed: int, confidence: float
 ) -> list[list[tuple[Spread, Spread]]] | None:
-    """Return first-order and total indices of each output and each variable.
+    """Return the first-order and total index of each output and each variable; None if any output
+    is not finite.
 
-    factors: outputs (n, s) of designs (n, d).
+    factors: a function from designs (n, d) to outputs (n, s).
     size: number d of independent standard normal variables.
-
-    Returns None where any output is not finite.
+    base: size of each scrambled set.
     """
     standard: Any = norm()
     first, total = [], []
@@ -45,7 +45,7 @@ def indices(
             return np.where(np.isfinite(values), values, 0.0)
 
         rng = np.random.default_rng([seed, 2, k])
-        with np.errstate(invalid="ignore", divide="ignore"):  # of an output that does not vary
+        with np.errstate(invalid="ignore", divide="ignore"):  # for an output that does not vary
             estimate = sobol_indices(func=outputs, n=base, dists=[standard] * size, rng=rng)
         if lost:
             return None

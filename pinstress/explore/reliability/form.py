@@ -1,16 +1,17 @@
 """First-order reliability: the design point and the quantile, in standard normal space.
 
-The design point is the failing point nearest to the origin, found by the improved HLRF iteration:
-Hasofer, Lind, Rackwitz and Fiessler's step, shortened until the merit function of Zhang and Der
-Kiureghian (1995) decreases. Where the limit state is so curved that this converges slowly,
-sequential quadratic programming goes on from there. The point's distance is the reliability index,
-and Phi(-index) estimates the probability of failure, exactly where the limit state is a plane. The
-inverse problem, the lowest value on a sphere about the origin, gives a quantile in the same sense
-(Tu, Choi and Park 1999).
+The design point is the failing point nearest to the origin. It is found by the improved HLRF
+iteration: the step of Hasofer, Lind, Rackwitz and Fiessler is shortened until the merit function of
+Zhang and Der Kiureghian (1995) decreases. If the curvature of the limit state makes this converge
+slowly, sequential quadratic programming continues from the last point. The distance of the design
+point is the reliability index, and Phi(-index) estimates the probability of failure; the estimate
+is exact if the limit state is a plane. The inverse problem, the lowest value on a sphere about the
+origin, gives a quantile in the same sense (Tu, Choi and Park 1999).
 
-Gradients are central differences. An error of the direction enters the index squared, so their
-steps may be wide where the noise of meshes would spoil small ones; there they are also averaged
-over nearby points, and the index is that of the plane through the last point.
+Gradients are central differences. An error of the direction has only a second-order effect on the
+index. The difference steps may therefore be wide, where the noise of meshes would spoil small ones.
+In that case gradients are also averaged over nearby points, and the index is that of the plane
+through the last point.
 """
 
 from __future__ import annotations
@@ -27,21 +28,21 @@ from scipy.special import ndtr, ndtri
 Array = NDArray[np.float64]
 LimitState = Callable[[Array], Array]  # at u (n, d): values (n,), failing where negative
 
-# Standard deviations: where the search ends, probabilities are below 1e-18
+# The search ends at this distance, in standard deviations; probabilities beyond are below 1e-18
 MAX_RELIABILITY_INDEX = 10.0
-DISTINCT_COSINE = 0.9  # of two directions: above it, two points are one
-QUANTILE_ANGLE = 0.01  # angle of a quantile's point, whose square is in the value
+DISTINCT_COSINE = 0.9  # two design points whose directions have a larger cosine are one
+QUANTILE_ANGLE = 0.01  # smallest tolerance of a quantile's direction; second order in the value
 
 
 @dataclass(frozen=True)
 class Closeness:
-    """Tolerances of the search for a design point, in standard deviations.
+    """The tolerances of the search for a design point; lengths in standard deviations.
 
-    step: step of differences.
-    distance: largest distance of the point to the limit state.
-    near: distance of the points over which gradients are averaged.
-    angle: of the point to the normal of the limit state.
-    iterations, halvings: largest numbers of these.
+    step: step of the differences.
+    angle: largest angle between the point's direction and the normal of the limit state, rad.
+    distance: largest distance of the point from the limit state.
+    near: radius within which gradients are averaged; 0 for no averaging.
+    iterations, halvings: largest numbers of iterations and of step halvings.
     """
 
     step: float = 0.01
@@ -53,12 +54,12 @@ class Closeness:
 
     @property
     def noisy(self) -> bool:
-        """Return whether gradients are averaged."""
+        """Whether gradients are averaged."""
         return self.near > 0.0
 
 
 SMOOTH_CLOSENESS = Closeness()
-# For limit states with the noise of meshes: a tenth of the angle is half a per cent of the index.
+# For limit states with mesh noise: an angle of 0.1 rad changes the index by half a per cent.
 NOISY_CLOSENESS = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
 
 
@@ -66,8 +67,9 @@ NOISY_CLOSENESS = Closeness(0.5, 0.1, 0.05, 0.8, 12, 3)
 class DesignPoint:
     """The failing point nearest to the origin, u (d,), and the reliability index.
 
-    The index is negative where the origin fails; with `why` the search has not converged and
-    neither means anything. evaluations: number of evaluations of the limit state.
+    index: negative if the origin fails. evaluations: number of evaluations of the limit state. why:
+    the reason why the search has not converged, in which case u and index are meaningless; else
+    empty.
     """
 
     u: Array
@@ -81,15 +83,17 @@ class DesignPoint:
 
     @property
     def direction(self) -> Array:
-        """Return the unit vector (d,) from the origin."""
+        """The unit vector (d,) from the origin to the point."""
         length = float(np.linalg.norm(self.u))
         return self.u / length if length else self.u
 
 
 @dataclass(frozen=True)
 class FormQuantile:
-    """The value below which a result stays with the requested probability, by the first order, at
-    u.
+    """The quantile of a result by a first-order approximation, and its point u (d,).
+
+    value: the result is below this value with the requested probability. evaluations, why: as in
+    DesignPoint.
     """
 
     value: float
@@ -126,9 +130,9 @@ class _Counted:
 def design_point(
     limit: LimitState, start: Array, close: Closeness = SMOOTH_CLOSENESS
 ) -> DesignPoint:
-    """Find the point nearest to the origin where `limit` is zero, from a start (d,).
+    """Find the design point, the point nearest to the origin where `limit` is zero.
 
-    A limit state with several such points needs several starts.
+    start: (d,). A limit state with several design points needs several starts.
     """
     g = _Counted(limit, close)
     origin = g.at(np.zeros_like(start))
@@ -156,7 +160,11 @@ def design_point(
 
 
 def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
-    """Find the nearest point from a start near it, using the curvature of the limit state."""
+    """Find the design point by sequential quadratic programming, which accounts for the curvature
+    of the limit state.
+
+    start: a point near it. scale: size of the limit state's values.
+    """
 
     def on_limit(u: Array) -> float:
         value = g.at(u) / scale
@@ -182,7 +190,7 @@ def _by_programming(g: _Counted, start: Array, scale: float) -> Array:
 def form_quantile(
     limit: LimitState, probability: float, size: int, close: Closeness = SMOOTH_CLOSENESS
 ) -> FormQuantile:
-    """Find the quantile of `limit` over d = size variables, by the first order."""
+    """Find the first-order quantile of `limit` over d = size variables."""
     g = _Counted(limit, close)
     radius = float(ndtri(probability))
     if abs(radius) > MAX_RELIABILITY_INDEX:
@@ -206,8 +214,8 @@ def form_quantile(
 
 
 def distinct(points: list[DesignPoint]) -> list[DesignPoint]:
-    """Return the converged points, nearest first, without those in nearly the direction of a nearer
-    one.
+    """Return the converged points, the nearest first, without points in nearly the same direction
+    as a nearer one.
     """
     separate: list[DesignPoint] = []
     for point in sorted((p for p in points if not p.why), key=lambda p: abs(p.index)):
@@ -232,27 +240,29 @@ def _aligned(u: Array, normal: Array, angle: float) -> bool:
 
 
 def _within(target: Array) -> Array:
-    """Limit a target to the distance at which the search ends."""
+    """Return a target, limited to the distance at which the search ends."""
     length = float(np.linalg.norm(target))
     return target if length <= MAX_RELIABILITY_INDEX else target * (MAX_RELIABILITY_INDEX / length)
 
 
 def _shortened(g: _Counted, u: Array, target: Array, weight: float, value: float) -> Array:
-    """Shorten the step to the target until it decreases |u|^2 / 2 + weight |g|."""
+    """Return the end of a step towards the target that is halved until it decreases
+    |u|^2 / 2 + weight |g|.
+    """
     before = 0.5 * float(u @ u) + weight * abs(value)
     part = 1.0
     for _ in range(g.close.halvings):
         trial = u + part * (target - u)
         after = 0.5 * float(trial @ trial) + weight * abs(g.at(trial))
-        if after < before:  # not so where g is not a number
+        if after < before:  # false if g is NaN
             return trial
         part /= 2.0
     return u + part * (target - u)
 
 
 def _on_sphere(g: _Counted, u: Array, target: Array, value: float, sign: float) -> Array:
-    """Turn from u towards the target, on their sphere, so that g decreases (increases for sign
-    1).
+    """Return a point between u and the target, on their sphere, at which g increases (sign 1) or
+    decreases (sign -1) from `value`.
     """
     radius, part = float(np.linalg.norm(u)), 1.0
     for _ in range(g.close.halvings):

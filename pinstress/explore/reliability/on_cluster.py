@@ -22,7 +22,7 @@ KEPT = "Designs that are solved are kept in the cache: the same command reuses t
 
 @dataclass(frozen=True)
 class KeptRows:
-    """Rows of designs, by their numbers from 0 among those that were asked for together."""
+    """The rows of solved designs. designs: their numbers, from 0, within one request."""
 
     designs: tuple[int, ...]
     rows: tuple[tuple[DesignRow, ...], ...]
@@ -35,13 +35,13 @@ def design_rows(
     values: Floats,
     report: Callable[[int], None],
 ) -> Rows:
-    """Solve designs on a cluster and return their rows, in their order.
+    """Solve designs on a cluster and return their rows, in the order of the designs.
 
-    cache: has those that were solved before, and gets those that are; None: none are kept.
-    values: (n, p) of the numbers of the problem, SI.
-    report: called with the number of designs that are solved.
+    cache: provides designs that were solved before and stores new ones; None to store none.
+    values: (n, p) values of the problem's numbers, SI.
+    report: called with the number of designs solved so far.
 
-    Raises: InputError where the cluster is lost.
+    Raises: InputError if the connection to the cluster is lost.
     """
     evaluator = evaluator_of(problem)
     rows: dict[int, list[DesignRow]] = {}
@@ -63,7 +63,7 @@ def design_rows(
 def _kept(
     cache: Cache | None, problem: DesignProblem, values: Floats, rows: dict[int, list[DesignRow]]
 ) -> Iterator[None]:
-    """Add the rows that a cache has of designs; keep those that are there when the block ends."""
+    """Add the cached rows of the designs to `rows`; when the block ends, cache all of `rows`."""
     if cache is None:
         yield
         return

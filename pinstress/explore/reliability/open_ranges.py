@@ -1,4 +1,4 @@
-"""What a study leaves open without a law: by how much a range raises the stress of its rows."""
+"""Ranges that a study leaves open without a law, and by how much they raise the stress of rows."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pinstress.study.reading.in_python import changed_study
 from reports.data.row import LandingRange, PinResult
 from reports.data.unknowns import factor_spread
 
-CLEARANCE = "clearance"  # of all lugs, as a joint is varied by it
+CLEARANCE = "clearance"  # of all lugs of a joint, which are varied together
 CLEARANCE_KEYS = (CLEARANCE, "interference", "fit")
-RANGES = {  # by whose they are
+RANGES = {  # words for the owner of a range
     "landing": "a landing's impulse",
     "strength": "a yield strength",
     CLEARANCE: "the clearances",
@@ -26,7 +26,7 @@ RANGES = {  # by whose they are
 def with_open_ranges(row: PinResult, laws: Collection[Path], material: str) -> PinResult:
     """Return a row of the study as it is, without the ranges that a law describes.
 
-    laws: paths of the numbers with a law. material: name of that of the row's pin.
+    laws: paths of the numbers with a law. material: name of the material of the row's pin.
     """
     by_law, joint = _by_law(row, laws, material), row.joint
     if CLEARANCE in by_law and joint is not None and joint.range is not None:
@@ -40,8 +40,8 @@ def with_open_ranges(row: PinResult, laws: Collection[Path], material: str) -> P
 
 
 def without_strength_ranges(study: Study, laws: Collection[Path]) -> Study:
-    """Return the study without the ranges of the yield strengths that a law describes, outside of
-    which a strength is refused.
+    """Return the study without the ranges of yield strengths that a law describes, because a
+    strength outside its range would be refused.
     """
     by_law = [
         name
@@ -53,9 +53,8 @@ def without_strength_ranges(study: Study, laws: Collection[Path]) -> Study:
 
 
 def growth(row: PinResult | None) -> float:
-    """Return the stress over all that is open in a row, over that as described; at least 1.
-
-    row: None, or one without a factor, has no growth.
+    """Return the ratio, at least 1, of the largest stress over all open ranges of a row to the
+    stress as described; 1 for None or a row without a factor.
     """
     spread = factor_spread(row) if row else None
     return max((row.safety_factor or 0.0) / spread[0], 1.0) if row and spread else 1.0
@@ -64,9 +63,9 @@ def growth(row: PinResult | None) -> float:
 def left_out(
     rows: Iterable[PinResult], laws: Collection[Path], materials: Mapping[str, str]
 ) -> Iterable[str]:
-    """Yield a sentence on each range that does not count, since a law describes it.
+    """Yield a sentence on each range that is left out, because a law describes it.
 
-    materials: names of those of the pins.
+    materials: the names of the pins' materials, by pin.
     """
     pins = [(owner, r.pin) for r in rows for owner in _by_law(r, laws, materials[r.pin])]
     for owner, name in RANGES.items():
@@ -90,7 +89,7 @@ def _by_law(row: PinResult, laws: Collection[Path], material: str) -> set[str]:
 
 
 def _impulse_by_law(landing: LandingRange, laws: Collection[Path]) -> bool:
-    """Return whether laws describe all that differs over the ranges of a landing's impulse."""
+    """Whether laws describe everything that varies over the ranges of a landing's impulse."""
     time, velocity = landing.nominal
     ranges = {
         "impulse_time": np.any(landing.impulse_time != time),
@@ -102,15 +101,15 @@ def _impulse_by_law(landing: LandingRange, laws: Collection[Path]) -> bool:
 
 
 def _clearances_by_law(row: PinResult, laws: Collection[Path]) -> bool:
-    """Return whether laws describe the clearances of all lugs of a pin in contact, of which the
-    joint is varied at once.
+    """Whether laws describe the clearances of all lugs of a pin in contact, which the range of the
+    joint varies together.
     """
     joint = row.joint
     if joint is None or joint.range is None or joint.range.model != "contact":
         return False
     if all(x.what != CLEARANCE for x in joint.range.variations):
         return False
-    alike = len({band.clearance for band in joint.bands}) == 1  # none has one of its own
+    alike = len({band.clearance for band in joint.bands}) == 1  # no lug has its own clearance
     if alike and any(("lug_defaults", key) in laws for key in CLEARANCE_KEYS):
         return True
     lugs = [("pin", row.pin, "lug", band.name) for band in joint.bands]

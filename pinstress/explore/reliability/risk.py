@@ -1,4 +1,4 @@
-"""Probabilities, quantiles and distribution of a row from the samples and FORM's results."""
+"""Probabilities, quantiles and distribution of a row, from the samples and the FORM results."""
 
 from __future__ import annotations
 
@@ -18,39 +18,39 @@ from reports.data.row import PinResult
 Array = NDArray[np.float64]
 
 CURVE_POINTS = 80  # points of a distribution
-MIN_SAMPLES_BELOW = 10  # weighted samples below a point of it
+MIN_SAMPLES_BELOW = 10  # smallest number of weighted samples below a point of a distribution
 
 
 @dataclass(frozen=True)
 class RiskColumn:
-    """A selector of a row of the study, or of all (None)."""
+    """A selector of one row of the study, by its number, or of the system of all rows (None)."""
 
     row: int | None
 
     def of(self, answers: Answers) -> tuple[Array, Array]:
-        """Return use and relative errors, (n,)."""
+        """Return the utilisations and their relative errors, (n,) each."""
         selected = answers.system if self.row is None else answers
         return selected.used[:, self.row or 0], selected.errors[:, self.row or 0]
 
     def deep(self, answers: Answers, growths: Array | float = 1.0) -> Array:
-        """Return use, or that beneath contact if it is larger, (n,).
+        """Return the utilisation (n,), or that beneath contact if it is larger.
 
-        growths: of the stress of each row, (rows,), by which use is multiplied.
+        growths: (rows,) factors on the stress of each row.
         """
         deep = answers.deep * growths
         return np.asarray(deep.max(axis=1) if self.row is None else deep[:, self.row])
 
     def increased(self, answers: Answers, part: float) -> Array:
-        """Return use (n,) with each stress increased by a part of its error.
+        """Return the utilisation (n,) with each stress increased by a part of its error.
 
-        Of all rows it is the largest then: the row with the largest stress need not have the
-        largest error.
+        For the system it is the largest of all rows after this increase, because the row with the
+        largest stress need not have the largest error.
         """
         used = answers.used * (1.0 + part * answers.errors)
         return np.asarray(used.max(axis=1) if self.row is None else used[:, self.row])
 
     def unbounded(self, answers: Answers) -> NDArray[np.bool_]:
-        """Return whether the stress is unbounded where it governs, (n,)."""
+        """Return whether the governing stress is unbounded, (n,)."""
         selected = answers.system if self.row is None else answers
         return np.asarray(selected.unbounded[:, self.row or 0])
 
@@ -60,13 +60,13 @@ class RiskColumn:
         return np.asarray(selected.loose[:, self.row or 0])
 
     def depends(self, answers: Answers) -> bool:
-        """Return whether the stress beneath contact ever governs."""
+        """Whether the stress beneath contact governs in any design."""
         return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Draws with their answers."""
+    """Random draws with the results of their designs."""
 
     draws: Draws
     answers: Answers
@@ -76,13 +76,13 @@ class Sample:
     ) -> Estimate:
         """Return the probability of failure.
 
-        part: part of its error by which each stress is increased.
+        part: fraction of its error by which each stress is increased.
         """
         margin = 1.0 - settings.factor * column.increased(self.answers, part)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def unbounded(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
-        """Return the probability of failure or of unbounded stress, whose factor is not known."""
+        """Return the probability of failure or of unbounded stress, which has no factor."""
         margin = 1.0 - settings.factor * column.increased(self.answers, 0.0)
         margin = np.where(column.unbounded(self.answers), -1.0, margin)
         return probability(self.draws, margin, 0.0, settings.confidence)
@@ -92,7 +92,7 @@ class Sample:
     ) -> Estimate:
         """Return the probability of failure or of dependence on the stress beneath contact.
 
-        growths: of the stress of each row over what is open.
+        growths: factors on the stress of each row over the open ranges.
         """
         margin = 1.0 - settings.factor * column.deep(self.answers, growths)
         return probability(self.draws, margin, 0.0, settings.confidence)
@@ -103,7 +103,7 @@ class Sample:
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
-        """Return the factor of safety that is missed with the stated probability."""
+        """Return the quantile of the safety factor at the probability of the settings."""
         with np.errstate(divide="ignore"):
             factors = 1.0 / column.of(self.answers)[0]
         return quantile(self.draws, factors, settings.probability, settings.confidence)
@@ -111,7 +111,7 @@ class Sample:
 
 @dataclass(frozen=True)
 class AssessedRow:
-    """A row of the study, or all of them, with its nominal result and FORM's result."""
+    """A row of the study, or the system of all rows, with its nominal and its FORM result."""
 
     pin: str
     case: str
@@ -130,7 +130,8 @@ def risk_of(
 ) -> Risk:
     """Return the risk of a row by plain and importance sampling.
 
-    growths: of the stress of each row of the study, (rows,), over what is open (`growth`).
+    growths: (rows,) factors on the stress of each row over the open ranges
+    (open_ranges.growth).
     """
     plain = sampled.probability(settings, row.column)
     by_weights = weighted and weighted.probability(settings, row.column)
@@ -167,7 +168,9 @@ def risk_of(
 def _beneath(
     sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
 ) -> Spread | None:
-    """Return the probability with the stress beneath contact; None where that never governs."""
+    """Return the probability of failure with the stress beneath contact; None if that stress never
+    governs.
+    """
     if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
         return None
     return _narrower(lambda sample: sample.deep(settings, row.column), sampled, weighted)
@@ -180,8 +183,8 @@ def _over_open(
     settings: ReliabilityTable,
     growths: Array | float,
 ) -> Spread | None:
-    """Return the probability at the worst of what is open, with the stress beneath contact; None
-    where nothing raises the stress.
+    """Return the probability of failure at the worst end of all open ranges, with the stress
+    beneath contact; None if no range raises the stress.
     """
     every = np.broadcast_to(growths, sampled.answers.used.shape[1])
     its = every if row.column.row is None else every[row.column.row]
@@ -193,8 +196,8 @@ def _over_open(
 def _unbounded(
     sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
 ) -> Spread | None:
-    """Return the probability of failure or of unbounded stress; None where stress is bounded in all
-    designs.
+    """Return the probability of failure or of unbounded stress; None if the stress is bounded in
+    all designs.
     """
     if not any(row.column.unbounded(x.answers).any() for x in (sampled, weighted) if x):
         return None
@@ -204,7 +207,7 @@ def _unbounded(
 def _loose(
     sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
 ) -> Spread | None:
-    """Return the probability that the pin comes loose; None where it does in no design."""
+    """Return the probability that the pin comes loose; None if it does so in no design."""
     if not any(row.column.loose(x.answers).any() for x in (sampled, weighted) if x):
         return None
     return _narrower(lambda sample: sample.loose(settings, row.column), sampled, weighted)
@@ -213,7 +216,7 @@ def _loose(
 def _narrower(
     estimate: Callable[[Sample], Estimate], sampled: Sample, weighted: Sample | None
 ) -> Spread:
-    """Return the estimate by plain or by importance sampling, whichever has less uncertainty."""
+    """Return the estimate by plain or by importance sampling, whichever interval is narrower."""
     return _bounded(estimate(sampled)).or_narrower(
         _bounded(estimate(weighted)) if weighted else None
     )
@@ -230,7 +233,9 @@ def _by_errors(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> By
 
 
 def _by_joint(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:
-    """Return the probability with the relative range over the joint of the nominal study."""
+    """Return the probabilities at both ends of the range over the joint, relative to the maximum of
+    the nominal study; None without such a range.
+    """
     nominal = row.nominal
     span = nominal.joint.range if nominal and nominal.joint else None
     if span is None or nominal is None or not nominal.max_von_mises or row.column.row is None:
@@ -256,7 +261,7 @@ def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, flo
     factors = 1.0 / used[known][order]
     below = np.cumsum(sample.draws.weights[known][order]) / len(used)
     inside = np.flatnonzero((below > 0.0) & (below < 1.0))
-    if way:  # of weighted samples, where they are many: not far above the design points
+    if way:  # weighted samples are dense only near and below the design points
         inside = inside[(below[inside] < 0.5) & (inside >= MIN_SAMPLES_BELOW)]
     if not len(inside):
         return ()

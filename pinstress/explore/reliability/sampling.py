@@ -1,12 +1,12 @@
 """Probabilities and quantiles from samples, with confidence intervals.
 
-Plain sampling has exact intervals (Clopper and Pearson; order statistics for quantiles).
-Importance sampling draws about the design points and weights each sample by its true density over
-the one it was drawn from (a deterministic mixture, in strata); a share is drawn plainly, which
-bounds the weights, so that a design point that was overlooked is not lost unnoticed.
+Plain sampling has exact intervals (Clopper and Pearson; order statistics for quantiles). Importance
+sampling draws about the design points and weights each sample by the ratio of its true density to
+the density from which it was drawn (a deterministic mixture, in strata). A share of the samples is
+drawn plainly. This bounds the weights, so that an overlooked design point does not go unnoticed.
 
-A design that fails to be evaluated counts both ways: as safe for the lower end of an interval, as
-failing for the upper.
+A design that cannot be evaluated counts both ways: as safe for the lower end of an interval, as
+failing for the upper end.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from scipy.stats import binom, binomtest
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-PLAIN_SHARE = 0.2  # of an importance sample that is drawn plainly
+PLAIN_SHARE = 0.2  # share of an importance sample that is drawn plainly
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with its confidence interval; an end that samples do not bound is infinite.
+    """An estimate with its confidence interval; an end that samples do not bound is infinite.
 
     count: number of failing samples.
     unknown: number of samples without a result.
@@ -46,7 +46,7 @@ class Draws:
     """Samples u (n, d) of independent standard normal variables.
 
     weights: (n,), one for each sample.
-    strata: number drawn about each centre, in this order; the first are plain.
+    strata: number of samples drawn about each centre, in this order; the first are plain.
     """
 
     u: Array
@@ -64,7 +64,7 @@ def plain_draws(samples: int, size: int, seed: int) -> Draws:
 
 
 def importance_draws(centres: Sequence[Array], samples: int, seed: int) -> Draws:
-    """Draw samples about centres (d,), with equal shares, and about the origin."""
+    """Draw samples about the origin and, in equal shares, about centres (d,)."""
     size, every = len(centres[0]), [np.zeros(len(centres[0])), *centres]
     share = max(1, int(samples * (1.0 - PLAIN_SHARE)) // len(centres))
     counts = (max(1, samples - share * len(centres)), *[share] * len(centres))
@@ -106,16 +106,16 @@ def quantile(draws: Draws, values: Array, probability: float, confidence: float)
 
 
 def _estimate(draws: Draws, failing: Flags, confidence: float) -> tuple[float, float, float]:
-    """Return value and interval of the probability of failure."""
+    """Return the value and the interval of the probability of failure."""
     if draws.plain:
         count, n = int(failing.sum()), len(failing)
         ends = binomtest(count, n).proportion_ci(confidence, method="exact")
         return count / n, float(ends.low), float(ends.high)
     value, spread = _mean(draws, failing)
-    if value == 0.0:  # weighted samples show nothing: the plain ones bound it
+    if value == 0.0:  # no weighted sample fails: the plain ones bound the probability
         n = draws.strata[0]
         return 0.0, 0.0, float(binomtest(0, n).proportion_ci(confidence, method="exact").high)
-    part = float(np.exp(_deviate(confidence) * spread / value))  # an interval of its logarithm
+    part = float(np.exp(_deviate(confidence) * spread / value))  # interval of the logarithm
     return value, value / part, min(1.0, value * part)
 
 
@@ -130,8 +130,11 @@ def _mean(draws: Draws, failing: Flags) -> tuple[float, float]:
 def _quantile(
     draws: Draws, values: Array, probability: float, confidence: float, known: Flags | None = None
 ) -> tuple[float, float, float]:
-    """Return a quantile and its interval: by order statistics of plain samples (binomial), by
-    Woodruff's interval of weighted ones.
+    """Return a quantile and its interval: by binomial order statistics for plain samples, by
+    Woodruff's interval for weighted samples.
+
+    known: mask of the samples that count; by default all. With it, weighted samples have no
+    interval.
     """
     weights = draws.weights if known is None else draws.weights[known]
     values = values if known is None else values[known]
@@ -159,7 +162,9 @@ def _quantile(
 
 
 def _first(ranked: Array, below: Array, probability: float) -> float:
-    """Return the lowest value that a part of at least `probability` does not exceed."""
+    """Return the lowest of the ranked values up to which the cumulative weight `below` reaches a
+    probability; infinite if there is none.
+    """
     at = int(np.searchsorted(below, probability))
     return float(ranked[at]) if at < len(ranked) else np.inf
 

@@ -1,9 +1,9 @@
 """The least weight at which the probability of missing a factor stays within a limit.
 
-Two searches alternate: the least weight of the study as it is, each row with a larger factor; and,
-for the result, the factor of each row that is missed with that probability, by the first order
-(pinstress.explore.reliability.form), whose ratio to the row's own factor sets the factor of the
-next search.
+Two searches alternate. The first finds the least weight of the study as it is, with a raised factor
+for each row. The second finds, for this result, the factor of each row that is missed with the
+given probability, by a first-order approximation (pinstress.explore.reliability.form). The ratio of
+the row's own factor to it raises the factor of the next search.
 
 Source: Du & Chen, J. Mech. Des. 126 (2004) 225 (sequential optimisation and assessment).
 """
@@ -38,17 +38,17 @@ from pinstress.study.reading.file import Study
 from reports.data.decision import low_factor
 
 MAX_ROUNDS = 5
-UNCHANGED_SHARE = 1e-12  # of a value: one that changes by less does not change
-MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # over the factor, with which a search ends
+UNCHANGED_SHARE = 1e-12  # relative: a value that changes by less does not depend on the variables
+MAX_FACTOR_EXCESS = 2.0 * FACTOR_TOLERANCE  # largest relative excess at which a search ends
 
 Row = tuple[str, str]  # pin and case
 
 
 def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> None:
-    """Check the laws of a study.
+    """Check that a study has laws that permit this search.
 
-    Raises: InputError for a study without laws, and for laws of dimensions that are to change and
-    do not move with them.
+    Raises: InputError for a study without laws, and for the law of a dimension that the search
+    varies if the law does not move with the dimension.
     """
     parameters, _ = random_numbers(study)
     vary = study.table.vary
@@ -71,7 +71,7 @@ def require_laws(study: Study, aim: WeightGoal, pins: Iterable[str] | None) -> N
 def factors_at(
     study: Study, pins: Iterable[str], probability: float, progress: Progress
 ) -> dict[Row, float]:
-    """Return for each row the factor that is missed with a probability (factor_at).
+    """Return for each row the factor that is missed with a given probability (factor_at).
 
     Raises: InputError.
     """
@@ -90,8 +90,8 @@ def factors_at(
 
 
 def factor_at(designs: SolvedDesigns, row: int, probability: float, close: Closeness) -> float:
-    """Return the factor of a row that is missed with a probability, by the first order; NaN where
-    it is not found, or where the stress is unbounded at that design.
+    """Return the factor of a row that is missed with a given probability, by a first-order
+    approximation; NaN if it is not found, or if the stress is unbounded at that design.
     """
 
     def unused(u: Array) -> Array:
@@ -101,7 +101,7 @@ def factor_at(designs: SolvedDesigns, row: int, probability: float, close: Close
     estimate = form_quantile(unused, probability, size, close)
     at = estimate.u
     if estimate.why:
-        # Of a row that nothing random changes there is no direction to search in, but one value.
+        # A row that no random number affects has no search direction, but it has a single value.
         at = np.zeros(size)
         around = float(ndtri(probability)) * np.eye(size)
         values = unused(np.concatenate([at[None, :], around, -around]))
@@ -120,9 +120,9 @@ def lighten_at(
     progress: Progress,
     log: SearchLog | None = None,
 ) -> LightStudy:
-    """Find every pin's least weight for a factor that is missed with at most a probability.
+    """Find every pin's least weight at which the factor is missed with at most a given probability.
 
-    log: as of `lighten`.
+    log: as in `lighten`.
 
     Raises: InputError.
     """
@@ -136,12 +136,12 @@ def lighten_at(
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
         if design.settled:
             break
-        likely = {
+        extra = {
             (p.pin, p.case): p.safety_factor / at[p.pin, p.case]
             for p in design.results.pins
             if p.safety_factor and np.isfinite(at.get((p.pin, p.case), np.nan))
         }
-        design = lighten(study, replace(aim, likely=likely), pins, jobs, progress, log)
+        design = lighten(study, replace(aim, extra_multiples=extra), pins, jobs, progress, log)
     else:
         at = factors_at(design.study, [pin.pin for pin in design.pins], probability, progress)
         design = replace(design, at=at, settled=design.settled and _reached(design, at, aim))
@@ -150,7 +150,7 @@ def lighten_at(
 
 
 def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
-    """Return whether every pin that was found reaches the factor, with little excess."""
+    """Whether every pin for which a result was found reaches the factor, with little excess."""
     for pin in design.pins:
         rows = [
             p
@@ -160,7 +160,7 @@ def _reached(design: LightStudy, at: dict[Row, float], aim: WeightGoal) -> bool:
         low = [
             (low_factor(p) or 0.0) * at.get((p.pin, p.case), np.nan) / (p.safety_factor or 1.0) / x
             for p in rows
-            if (x := aim.more.get((p.pin, p.case), 1.0))
+            if (x := aim.multiples.get((p.pin, p.case), 1.0))
         ]
         if pin.factor is None or not low:
             continue

@@ -1,6 +1,4 @@
-"""Derivatives of the stress of a pin in contact with respect to the dimensions that its least
-weight may change.
-"""
+"""Derivatives of the stress of a pin in contact by its dimensions, for the least weight."""
 
 from __future__ import annotations
 
@@ -17,12 +15,12 @@ from pinstress.explore.size.scaled_study import hole_in_eye
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study
 
-BAND_RATE_STEP = 3e-5  # of a dimension, by which its effect on a band is found
+BAND_RATE_STEP = 3e-5  # relative step of a dimension to find its effect on a band's diameter
 
 
 class UndifferentiatedError(Exception):
-    """The stress has no derivatives by dimensions: that of a pin with cuts, or of some pins in
-    contact.
+    """The error that a stress has no derivatives by dimensions, as for a pin with cuts and for some
+    pins in contact.
     """
 
 
@@ -32,10 +30,10 @@ def by_contact(
     row: tuple[Task, Solution, Place],
     dimensions: tuple[Dimension, ...],
 ) -> Floats:
-    """Return relative derivatives (n,) of the largest stress of a place, 1/m.
+    """Return the relative derivatives (n,) of the largest stress of a place, 1/m.
 
-    before, study: the study as given, and as changed. Eyes that are wider in it, because they
-    became too narrow, grow with the pin.
+    before, study: the study as given, and as changed. Eyes that are wider in the changed study,
+    because they would have been too narrow, are assumed to grow with the pin.
     row: the task, its solution and the place.
 
     Raises: UndifferentiatedError.
@@ -59,7 +57,7 @@ def by_contact(
 
 
 def _band_rates(task: Task, dimensions: tuple[Dimension, ...], connection: str) -> Floats:
-    """Return derivatives (n,) of the diameter on which a link bears, by the dimensions."""
+    """Return the derivatives (n,) of the diameter on which a link bears, by the dimensions."""
     now, out = task.pin.band(connection).radius, []
     for d in dimensions:
         less = d.changed(d.value * (1.0 - BAND_RATE_STEP)).band(connection).radius

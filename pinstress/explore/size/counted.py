@@ -1,5 +1,5 @@
-"""The stresses of a row that count when a pin is sized: the largest of surface, section and beneath
-contact, each with its error. A row is safe only if all three meet a factor.
+"""The stresses of a row that count when a pin is sized: the largest of the surface, of the sections
+and beneath contact, each with its error. A row is safe only if all three meet the factor.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ from fea.core.places import Place
 
 
 def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
-    """Return the names of both places with the upper ends of their stresses, Pa.
+    """Yield the places "surface" and "section" with the upper ends of their stresses, Pa.
 
-    A row without places, or with a governing singular surface, has the stress of the row.
+    The surface of a row without places, or with a governing singular surface, has the stress of the
+    row.
     """
     places = peak.places
     if places is None or (peak.verdict == "singular" and places.governs == "surface"):
@@ -25,13 +26,13 @@ def surface_and_section(peak: Maximum) -> Iterator[tuple[Place, float]]:
 
 
 def why_unsolved(peak: Maximum) -> str:
-    """Return why a pin has no maximum in a case; empty where it has one."""
+    """Return why a pin has no maximum in a load case; empty if it has one."""
     reasons = {"rigid": "it is unconstrained", "failed": "the numerical solution failed"}
     why = reasons.get(peak.verdict, "")
     return why and f"{why} in case {peak.case}: {peak.note}"
 
 
 def beneath(peak: Maximum) -> float:
-    """Return the stress beneath contact with its error, Pa; 0 without any."""
+    """Return the stress beneath contact with its error, Pa; 0 without contact."""
     contact = peak.places and peak.places.contact
     return contact.upper_end if contact else 0.0

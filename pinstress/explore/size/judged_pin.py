@@ -1,4 +1,4 @@
-"""What a solution of a new study says of one of its pins: its factor, and why it is not safe."""
+"""The judgement of one pin in the results of a new study: its factor, and why it is not safe."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from reports.format.words import margin_words, over_words
 
 @dataclass(frozen=True)
 class JudgedPin:
-    """A pin in a solution.
+    """The judgement of a pin in the results of a study.
 
     factor: the lowest factor that counts, as text.
-    governs: its case, and beneath contact if that is where it is.
-    stricter: a hand check with a smaller factor, if any.
-    why: the reason why the factor is not shown to be reached, empty if it is.
-    outcome: one of assess.judgement, over all checks of the pin.
-    cases: the factor that counts in each case, with its error.
+    governs: the load case of this factor, with "beneath contact" if it is of that stress.
+    stricter: a hand check with a smaller factor, in words; empty if there is none.
+    why: the reason why the factor is not shown to be reached; empty if it is.
+    outcome: one of the outcomes of assess.judgement, over all checks of the pin.
+    cases: each load case with the factor that counts, which includes its error.
     """
 
     factor: str
@@ -37,7 +37,7 @@ class JudgedPin:
 
 
 def judged_pin(results: Results, pin: str) -> JudgedPin:
-    """Return what results say of a pin."""
+    """Return the judgement of a pin in results."""
     rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
     worst = min(rows, key=lambda p: min(p.safety_factor or 0.0, beneath_factor(p)), default=None)
     why = why_missed(results, pin)
@@ -51,8 +51,8 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
 
 
 def _outcome(results: Results, pin: str, why: str) -> str:
-    """Return the outcome of a pin whose factor, for the reason `why`, is not shown to be reached;
-    of one without a reason, SAFE.
+    """Return the outcome of a pin; SAFE if there is no reason `why` the factor is not shown to be
+    reached.
     """
     if not why:
         return SAFE
@@ -76,7 +76,9 @@ def _lowest(worst: PinResult | None) -> tuple[str, str]:
 
 
 def _counted(row: PinResult) -> float | None:
-    """Return the factor of a row as a size counts it; a singular row without its interval."""
+    """Return the factor of a row as sizing counts it; for a singular row, the factor itself rather
+    than the lower end of its interval.
+    """
     if row.verdict == "singular" and row.safety_factor is not None:
         return min(row.safety_factor, beneath_factor(row))
     return low_factor(row)
@@ -144,6 +146,6 @@ def _unsolved(results: Results, pin: str) -> list[PinResult]:
 
 
 def _strict_check(results: Results, pin: str) -> JudgedCheck | None:
-    """Return the worst check of a pin, if it is not that of a row and fails."""
+    """Return the worst check of a pin if it fails and is not the stress check of a row."""
     check = worst_checks(results)[pin]
     return check if check.row is None and check.outcome == FAILS else None

@@ -1,5 +1,5 @@
-"""The least weight of all pins of a study that reach a factor of safety, under loads that follow
-from the weights.
+"""The least weight at which all pins of a study reach a safety factor; the loads follow from the
+weights.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ LEAST_WEIGHT_MODULES = ("fea.solve.solve", "assess.derivatives.places", "scipy.o
 
 @dataclass(frozen=True)
 class LightStudy:
-    """The new study, the result for every pin, and the new study's run.
+    """The new study, the result for every pin, and the results of the new study's run.
 
-    passes: number of searches of those pins that were searched most often.
+    passes: largest number of searches of any pin.
     settled: whether the run confirms all pins.
-    at: by pin and case, the factor at a probability, if requested.
+    at: the factor at a given probability, by pin and case, if requested.
     """
 
     study: Study
@@ -58,11 +58,12 @@ def lighten(
 ) -> LightStudy:
     """Find every pin's least weight.
 
-    Weights of pins change the loads of others, and a run has finer cells of contact than a search.
-    So a pin is searched again from where it is, under the loads of the new study, until that one's
-    run confirms it; where the run has a smaller factor, for as much more.
+    The weight of a pin changes the loads of other pins, and a run has finer contact cells than a
+    search. A pin is therefore searched again from its last design, under the loads of the new
+    study, until a run of the new study confirms it. If the run finds a smaller factor, the next
+    search aims at a correspondingly larger one.
 
-    log: of searches, in which those that are done are not made again.
+    log: the finished searches, which are not repeated.
 
     Raises: InputError.
     """
@@ -104,8 +105,8 @@ def lighten(
 
 
 def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, CaseLoads]]:
-    """Run pins for their factors, without what only explains their rows; the results and the
-    loads. Pins that are as they were before, under the same loads, come from the user's cache.
+    """Run pins for their factors, without results that only explain the rows. Return the results
+    and the loads. Unchanged pins under the same loads come from the user's cache.
     """
     plan = prepare(study, pins=pins)
     requirement = replace(plan.requirement, goal="value")
@@ -114,36 +115,37 @@ def _run(study: Study, pins: list[str], jobs: int) -> tuple[Results, dict[str, C
 
 
 def _raised(aim: WeightGoal, raised: Mapping[str, float], cases: Iterable[str]) -> WeightGoal:
-    """Return the goal with factors that are so many times as large, by pin."""
+    """Return the goal with the factors of each pin multiplied; raised: the multiple, by pin."""
     places = [(pin, case) for pin, times in raised.items() if times != 1.0 for case in cases]
-    more = {place: raised[place[0]] * aim.likely.get(place, 1.0) for place in places}
-    return replace(aim, likely={**aim.likely, **more})
+    changed = {place: raised[place[0]] * aim.extra_multiples.get(place, 1.0) for place in places}
+    return replace(aim, extra_multiples={**aim.extra_multiples, **changed})
 
 
 def _unconfirmed(
     pin: Lightest, results: Results, aim: WeightGoal, raised: float, changes: Collection[float]
 ) -> float | None:
-    """Return how many times the factor of a pin's next search is to be that of this one; None where
-    a run confirms the pin.
+    """Return the ratio of the factor of a pin's next search to that of the last one; None if the
+    run confirms the pin.
 
-    raised: times the required factor, in this search. changes: of the loads since, by case.
+    raised: multiple of the required factor in the last search. changes: of the loads since then,
+    one for each case.
     """
-    more = aim.of_pin(pin.pin)
+    multiples = aim.of_pin(pin.pin)
     rows = [p for p in results.pins if p.pin == pin.pin]
     ended = any(p.verdict == "unconverged" and p.decided and not p.minor for p in rows)
     if ended and all(p.decided is not False for p in rows):
-        return None  # it ended where that was decided
+        return None  # the row was solved only until it was decided
     low = [
         f / times
         for p in rows
-        if (f := low_factor(p)) is not None and (times := more.get(p.case, 1.0))
+        if (f := low_factor(p)) is not None and (times := multiples.get(p.case, 1.0))
     ]
     if pin.factor is None or not low:
         return None
     factor = min(low) * (1.0 + 1e-9)
     if factor < aim.required:
         return aim.required / factor * (1.0 + STRESS_MARGIN)
-    # Under the same loads a search would end where it did.
+    # Under the same loads another search would end at the same design.
     moved = max(changes, default=0.0) > FACTOR_TOLERANCE
     return 1.0 if moved and factor > raised * pin.factor * (1.0 + FACTOR_TOLERANCE) else None
 
@@ -151,11 +153,11 @@ def _unconfirmed(
 def _worse(
     study: Study, aim: WeightGoal, pins: tuple[Lightest, ...], results: Results, jobs: int
 ) -> dict[str, str]:
-    """Explain by pin why its result is decided worse than the pin as it is.
+    """Return, for each pin whose outcome is worse than that of the pin as given, an explanation.
 
-    A row that is safe is better than one that is not decided, and this better than one that fails.
-    Pins are compared as described: one that just reaches a factor does not over a range of its
-    joint.
+    A safe row is better than one that is not decided, which is better than one that fails. Pins are
+    compared as described, because a pin that just reaches its factor does not reach it over the
+    range of its joint.
     """
     changed = {x.pin for x in pins if not x.kept and (x.values or x.scale is not None)}
     doubtful = {

@@ -1,7 +1,8 @@
-"""The least weight of one pin that reaches a factor of safety in all its cases, under given loads.
+"""The least weight at which one pin reaches a safety factor in all its load cases, under given
+loads.
 
-First it is scaled as a whole, as `size` does; the search goes on from there, so that it is never
-heavier. The result is rounded as it is written, and solved once more.
+First the pin is scaled as a whole, as `size` does. The search continues from that design, so that
+the result is never heavier. The result is rounded as it is written, and solved once more.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-# Of the weight of a pin that is only scaled, where that was found by slopes
+# Relative uncertainty of the weight of a pin that is only scaled, if slopes gave the scale
 SCALED_WEIGHT_DOUBT = 0.03
 SCALED_AS_WHOLE_NOTE = (
     "scaled as a whole, because its stress has no derivatives by its dimensions{}"
@@ -48,19 +49,20 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Lightest:
-    """The lightest form of a pin.
+    """The lightest design of a pin.
 
-    values: its dimensions by key, m, as they are written; None if it is only scaled.
-    scale: scale of a pin that is only scaled. Both are None where nothing reaches the factor, for
-    the reason `why`.
-    before: lower end of its factor as it was, in the case that governed.
-    factor: the same with these dimensions, over what is demanded there, times the required one.
-    scaled: its volume, m^3, were it only scaled; None where that is not known.
-    whole: its dimensions, m, were it only scaled; None where they are not known.
-    optimality: how far the result of the search meets the conditions of an optimum.
-    binding: active constraints, in words, with their multipliers.
-    solved: number of designs.
-    way: why it is only scaled, or left as it is, or how the search ended if it did not converge.
+    values: its dimensions by key, m, as they are written; None if the pin is only scaled.
+    scale: the scale of a pin that is only scaled. If both are None, no design reaches the factor,
+    for the reason `why`.
+    before: lower end of the pin's factor as given, in the case that governed.
+    factor: lower end of the factor with the new dimensions, divided by the multiple demanded in the
+    governing case.
+    scaled: volume of the pin if it were only scaled, m^3; None if unknown.
+    whole: dimensions of the pin if it were only scaled, m; None if unknown.
+    optimality: how far the result meets the conditions of an optimum.
+    binding: the active constraints, in words, with their multipliers.
+    solved: number of solved designs.
+    way: why the pin is only scaled, or left as given, or why the search did not converge.
     decided: as in Start.
     """
 
@@ -80,19 +82,19 @@ class Lightest:
 
     @property
     def kept(self) -> bool:
-        """Return whether the pin is left as it is."""
+        """Whether the pin is left as given."""
         return self.way.startswith(LEFT_AS_IT_IS)
 
 
 @dataclass(frozen=True)
 class Start:
-    """The start of a search for a pin, as found under other loads.
+    """The start of a search: a pin's last design, as found under other loads.
 
     values: its dimensions by key, m.
     scale: its scale, if it is only scaled.
-    whole: its dimensions, m, were it only scaled.
-    decided: cases in which no singularity may govern; by default those in which none does in the
-    pin as it is given.
+    whole: its dimensions if it were only scaled, m.
+    decided: cases in which no singularity may govern; by default those in which none governs in the
+    pin as given.
     """
 
     values: dict[str, float] | None = None
@@ -109,11 +111,11 @@ def lightest_pin(
     start: Start | None = None,
     tell: Tell = lambda _: None,
 ) -> Lightest:
-    """Find the lightest form of a pin of the study as it was given.
+    """Find the lightest design of a pin.
 
-    plan: has the loads of the study as it is now.
+    study: the study as given. plan: has the loads of the study as changed so far.
 
-    Failures are reported in the answer.
+    Failures are reported in the result.
     """
     problem = problem_of(study, plan, pin, aim)
     if isinstance(problem, str):
@@ -127,9 +129,9 @@ def lightest_pin(
         shape, known = problem.shape, start.values or {}
         values = np.array([known.get(d.key, d.value) for d in shape.dimensions])
         stress.at(values, SLOPE_RANGE)
-        sure = stress.sure(values)
-        before = problem.demanded(sure.governs) * float(np.exp(-sure.largest))
-        stress.watched = decided(sure.peaks) if start.decided is None else start.decided
+        fine = stress.verified(values)
+        before = problem.demanded(fine.governs) * float(np.exp(-fine.largest))
+        stress.watched = decided(fine.peaks) if start.decided is None else start.decided
         start = replace(start, decided=stress.watched)
         first = stress.at(values)
         search = WeightSearch(problem, stress, aim)
@@ -151,12 +153,12 @@ def lightest_pin(
 
 
 def _singular(stress: PinStress) -> bool:
-    """Return whether a singularity governs in the design that was solved first."""
+    """Whether a singularity governs in the design that was solved first."""
     return any(peak.verdict == "singular" for peak in stress.solved[0].peaks)
 
 
 def as_it_is(study: Study, aim: WeightGoal, result: Lightest, why: str) -> Lightest:
-    """Return the pin as it is in the study in place of a result that is decided worse."""
+    """Return the pin as given in the study, to replace a result whose outcome is worse."""
     shape = VariedShape(study, pin_of(study, result.pin), aim.vary, aim.limits)
     values = {d.key: d.value for d in shape.dimensions} or None
     scale = 1.0 if values is None else None
@@ -197,7 +199,7 @@ def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
 
 
 def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingProblem | str:
-    """Return the problem that is posed for a pin, or the reason why there is none."""
+    """Return the sizing problem of a pin, or the reason why there is none."""
     if why := why_fixed(study, pin):
         return why
     shaft = pin_of(study, pin)
@@ -209,18 +211,18 @@ def problem_of(study: Study, plan: Plan, pin: str, aim: WeightGoal) -> SizingPro
             if any(kind_of(d.key) == kind for d in dimensions_of(study, shaft))
         ]
         return f"it has no {' or '.join(aim.vary)} to vary, only {' and '.join(has)}"
-    more = aim.of_pin(pin)
-    loads = {case: x for case, x in plan.loads.items() if more.get(case, 1.0)}
+    multiples = aim.of_pin(pin)
+    loads = {case: x for case, x in plan.loads.items() if multiples.get(case, 1.0)}
     if not loads:
         return "no factor is required of it"
     requirement = replace(plan.requirement, goal="value", varied=False)
-    return SizingProblem(study, pin, shape, requirement, loads, aim.required, more)
+    return SizingProblem(study, pin, shape, requirement, loads, aim.required, multiples)
 
 
 def _found(search: WeightSearch, near: SolvedPin, whole: tuple[float, ...] | None) -> Lightest:
-    """Search from a design near the factor.
+    """Search from a design near the factor, and return the lightest design.
 
-    whole: dimensions of the pin that is only scaled, m, if known.
+    whole: dimensions of the pin if it were only scaled, m; None if unknown.
     """
     shape, aim = search.shape, search.aim
     optimum = optimum_of(search, near)

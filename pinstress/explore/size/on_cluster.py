@@ -1,4 +1,4 @@
-"""Pins sized on the user's own cluster, each by one of its workers."""
+"""Pins sized on an existing cluster, each by one worker."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ WORKER_DIED = ProcessDied("the worker that sized it ended by itself, out of memo
 
 @dataclass(frozen=True)
 class ClusterSizing:
-    """All that a worker needs to size pins of a study, as text where it can be.
+    """All data that a worker needs to size pins of a study, as text where possible.
 
-    files: hash of the contents that were sent of the files that the study names; empty where they
-    are read as they lie here.
+    files: hash of the sent contents of the files that the study names; empty if the files are read
+    from this machine.
     """
 
     path: Path
@@ -39,12 +39,12 @@ class ClusterSizing:
 
     @property
     def planned(self) -> tuple[Path, str, bool, tuple[str, ...], tuple[str, ...], str]:
-        """All on which the plan depends."""
+        """All data on which the plan depends."""
         return self.path, self.text, self.located, self.pins, self.cases, self.files
 
     @classmethod
     def of(cls, plan: Plan, goal: SizingGoal) -> ClusterSizing:
-        """Return the problem of a plan's pins, whose files are named by absolute paths."""
+        """Return the problem of a plan's pins, with an absolute path of the study."""
         study = plan.study
         place = study.path.absolute(), study.text, study.located
         return cls(*place, goal, plan.pins, tuple(plan.loads))
@@ -52,9 +52,9 @@ class ClusterSizing:
 
 @dataclass(frozen=True)
 class PinTask:
-    """A pin to be sized, by its number among those that are.
+    """A pin to be sized. number: its number among the pins to be sized.
 
-    scales: of the pins so far, by name.
+    scales: the scales of the pins so far, by name.
     """
 
     number: int
@@ -63,7 +63,7 @@ class PinTask:
 
 
 class PinQueue:
-    """The pins that are to be sized (pinstress.explore.sweep.scheduler.WorkQueue)."""
+    """The queue of pins to be sized, a pinstress.explore.sweep.scheduler.WorkQueue."""
 
     def __init__(self, pins: Sequence[PinTask], done: Done, progress: Progress) -> None:
         self._left, self._done, self._progress = list(reversed(pins)), done, progress
@@ -71,10 +71,10 @@ class PinQueue:
         self._count = len(pins)
 
     def spread_over(self, workers: int) -> None:
-        """A pin is not divided."""
+        """Do nothing, because a pin cannot be divided."""
 
     def take(self) -> PinTask | None:
-        """Return the next pin; None without one."""
+        """Return the next pin; None if there is none."""
         if not self._left:
             return None
         task = self._left.pop()
@@ -83,11 +83,11 @@ class PinQueue:
         return task
 
     def done(self, done: tuple[int, SizingResult]) -> None:
-        """Keep the size of a pin."""
+        """Keep the result of a pin."""
         self._end(*done)
 
     def died(self, item: PinTask) -> None:
-        """Give up a pin."""
+        """Give up a pin whose worker died."""
         self._end(item.number, WORKER_DIED)
 
     def _end(self, number: int, result: SizingResult | ProcessDied) -> None:
@@ -111,9 +111,10 @@ def size_on(
 ) -> None:
     """Size pins on a cluster.
 
-    scales: of the pins so far, by name. done: called with the number of each pin and its size.
+    scales: the scales of the pins so far, by name. done: called with the number of each pin and its
+    result.
 
-    Raises: InputError where the cluster is lost.
+    Raises: InputError if the connection to the cluster is lost.
     """
     with noted_files() as files:
         _plan.__wrapped__(*problem.planned)
@@ -123,7 +124,7 @@ def size_on(
 
 
 def size_there(problem: ClusterSizing, task: PinTask) -> tuple[int, SizingResult]:
-    """Size a pin in a worker, and return it with its number."""
+    """Size a pin in a worker, and return its number and result."""
     with one_solver():
         plan = _plan(*problem.planned)
         return task.number, size_pin(plan, task.pin, problem.goal, dict(task.scales))
@@ -133,5 +134,7 @@ def size_there(problem: ClusterSizing, task: PinTask) -> tuple[int, SizingResult
 def _plan(
     path: Path, text: str, located: bool, pins: tuple[str, ...], cases: tuple[str, ...], _: str
 ) -> Plan:
-    """Return the plan of this process; the last argument tells contents of files apart."""
+    """Return the plan of this process; the last argument, a hash, only distinguishes the contents
+    of files.
+    """
     return prepare(parse_study(path, text, located), pins=pins, cases=cases)

@@ -1,13 +1,13 @@
 """The least weight under stresses that are costly to compute, in the logarithms of dimensions.
 
-Stress against a dimension is nearly a power, so the logarithm of the stress at a place is nearly
-linear in the logarithms: each step takes the tangents of stress at every place, also those of
-earlier solutions that do not contradict the present one (sums of powers are convex, and then every
-tangent is a bound from below), and SciPy's SLSQP finds the least weight within a distance from
-here. Weight and geometric limits are exact in it. A step that does not lower the merit (weight plus
-a penalty on exceeded stresses) is taken back, and the next one is shorter. At the end the
-optimality conditions are checked: the weight's gradient must be a sum of those of active
-constraints with multipliers that are not negative.
+The stress at a place is nearly a power of a dimension, so its logarithm is nearly linear in the
+logarithms of the dimensions. Each step linearises the stresses at all places. Tangents of earlier
+solutions are used too if they do not contradict the present one: sums of powers are convex, so that
+every tangent is a lower bound. SciPy's SLSQP then finds the least weight within a trust region;
+weight and geometric limits are exact in this problem. A step that does not lower the merit (weight
+plus a penalty on exceeded stresses) is rejected, and the next step is shorter. At the end the
+optimality conditions are checked: the gradient of the weight must be a combination of the gradients
+of active constraints with non-negative multipliers.
 
 Source: Kelley, J. SIAM 8 (1960) 703 (cutting planes); Nocedal & Wright, Numerical Optimization, 2nd
 ed., 12.3 (the conditions), 18.5 (an exact penalty in a trust region); non-negative multipliers by
@@ -27,30 +27,30 @@ from scipy.optimize import minimize, nnls
 Array = NDArray[np.float64]
 Tell = Callable[[str], None]
 
-# Of excess stress; multipliers add up to 1 where stress falls with the area or faster
+# Penalty on excess stress; the multipliers sum to 1 if stress falls with the area or faster
 STRESS_PENALTY = 2.0
-GEOMETRY_PENALTY = 10.0  # the same of geometric limits
+GEOMETRY_PENALTY = 10.0  # penalty on violated geometric limits
 FIRST_LOG_STEP, MAX_LOG_STEP = 0.7, 1.1  # steps of a logarithm: to half, to a third
 MIN_LOG_STEP = 2e-3
-MERIT_TOLERANCE = 5e-4  # of the merit
-MIN_GAIN_RATIO = 0.1  # part of the promise that a step must keep
-# Distance from its limit at which a stress, a ratio or a bound is active: the error of meshes
+MERIT_TOLERANCE = 5e-4  # predicted reduction of the merit at which the search ends
+MIN_GAIN_RATIO = 0.1  # smallest accepted ratio of actual to predicted reduction
+# Distance from its limit at which a stress, a ratio or a bound is active; the error of meshes
 ACTIVE_TOLERANCE = 0.02
-TANGENT_TOLERANCE = 1e-3  # by which an earlier tangent may exceed the stress
-MAX_TANGENTS = 6  # the latest of a place, which are nearest
-MAX_SOLUTIONS = 25  # after which the search ends without an optimum
+TANGENT_TOLERANCE = 1e-3  # amount by which an earlier tangent may exceed the stress
+MAX_TANGENTS = 6  # latest tangents of a place, which are nearest to the present point
+MAX_SOLUTIONS = 25  # number of solutions after which the search ends without an optimum
 
 
 class ImpossibleError(Exception):
-    """No such design exists, or it cannot be solved; the message says why."""
+    """The error that no such design exists or that it cannot be solved; the message says why."""
 
 
 @dataclass(frozen=True)
 class StressPlace:
     """A place where stress may govern.
 
-    value: logarithm of the stress over what is allowed.
-    slope: its derivatives (n,), None where they were not worth finding.
+    value: logarithm of the ratio of the stress to the allowed stress.
+    slope: derivatives (n,) of `value`, None where they were not computed.
     guess: estimate of the derivatives until they are known.
     """
 
@@ -65,15 +65,13 @@ class WeightProblem(Protocol):
 
     @property
     def bounds(self) -> tuple[Array, Array]:
-        """Return least and largest x."""
+        """The smallest and the largest x."""
 
     def weight(self, x: Array) -> tuple[float, Array]:
         """Return the logarithm of the weight and its gradient."""
 
     def limits(self, x: Array) -> tuple[Array, Array]:
-        """Return geometric limits (m,), negative where they are violated, and their gradients (m,
-        n).
-        """
+        """Return the geometric limits (m,), negative where violated, and their gradients (m, n)."""
 
     def stresses(self, x: Array) -> tuple[StressPlace, ...]:
         """Return the stresses at all places.
@@ -84,12 +82,12 @@ class WeightProblem(Protocol):
 
 @dataclass(frozen=True)
 class Optimality:
-    """The conditions of an optimum at a point.
+    """The optimality conditions at a point.
 
-    residual: relative part of the weight's gradient that is no sum of active constraints' gradients
-    with non-negative multipliers.
+    residual: relative part of the weight's gradient that is not a combination of the gradients of
+    active constraints with non-negative multipliers.
     multipliers: of places, by name, and of limits and bounds ("limit 3", "least 1", "most 2",
-    counted from 1): the relative fall in weight for each relative relaxation of the limit.
+    counted from 1): the relative reduction of the weight per relative relaxation of the limit.
     """
 
     residual: float
@@ -98,14 +96,14 @@ class Optimality:
 
 @dataclass(frozen=True)
 class Optimum:
-    """The last point that was accepted.
+    """The last accepted point.
 
     x: the point (n,).
     weight: logarithm of the weight.
-    places: stresses there.
-    optimality: how far the conditions of an optimum hold.
-    solved: number of designs that were solved.
-    why: why the search did not converge; empty if it did.
+    places: stresses at the point.
+    optimality: the optimality conditions at the point.
+    solved: number of solved designs.
+    why: the reason why the search did not converge; empty if it did.
     """
 
     x: Array
@@ -117,7 +115,7 @@ class Optimum:
 
     @property
     def worst(self) -> float:
-        """Return the logarithm of the largest stress over what is allowed."""
+        """The largest value of the places at the point."""
         return worst(self.places)
 
 
@@ -128,20 +126,22 @@ def worst(places: tuple[StressPlace, ...]) -> float:
 
 @dataclass(frozen=True)
 class Tangents:
-    """Tangents of stresses, by name of place, the latest first: the point, the value there and the
-    slope.
+    """The known tangents of stresses by name of place, the latest first. A tangent is a point, the
+    value there and the slope.
     """
 
     known: dict[str, tuple[tuple[Array, float, Array], ...]] = field(default_factory=dict)
 
     def then(self, x: Array, places: tuple[StressPlace, ...]) -> Tangents:
-        """Add the tangents of places that have a slope at a point."""
+        """Return the tangents with those of all places that have a slope at a point added."""
         new = {p.name: (x, p.value, p.slope) for p in places if p.slope is not None}
-        more = {name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()}
-        return Tangents(self.known | more)
+        longer = {
+            name: (one, *self.known.get(name, ()))[:MAX_TANGENTS] for name, one in new.items()
+        }
+        return Tangents(self.known | longer)
 
     def completed(self, places: tuple[StressPlace, ...]) -> tuple[StressPlace, ...]:
-        """Give places without a slope their latest one, if there is one."""
+        """Return the places, where those without a slope get their latest known one."""
         return tuple(
             StressPlace(p.name, p.value, self.known[p.name][0][2])
             if p.slope is None and p.name in self.known
@@ -150,7 +150,11 @@ class Tangents:
         )
 
     def at(self, x: Array, places: tuple[StressPlace, ...]) -> tuple[Array, Array]:
-        """Return values (J,) at a point where the places are known, and slopes (J, n)."""
+        """Return the values (J,) of all tangents at the present point, and their slopes (J, n).
+
+        x: the present point. places: the stresses there. Earlier tangents count only if they do not
+        exceed the stress here.
+        """
         every = [(p.value, p.guess if p.slope is None else p.slope) for p in self.completed(places)]
         tangents = [(value, slope) for value, slope in every if slope is not None]
         for place in places:
@@ -170,9 +174,9 @@ def least_weight(
 ) -> Optimum:
     """Find the optimum from a start (n,).
 
-    close: a step that promises less reduction of the merit ends the search.
+    close: the search ends when the predicted reduction of the merit is not larger than this.
 
-    Raises: ImpossibleError where the start cannot be solved.
+    Raises: ImpossibleError if the start cannot be solved.
     """
     lower, upper = problem.bounds
     x = np.clip(start, lower, upper)
@@ -209,14 +213,14 @@ def least_weight(
 
 
 def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]) -> Optimality:
-    """Return how far the conditions of an optimum hold at a point whose places have derivatives."""
+    """Return how far the optimality conditions hold at a point whose places have derivatives."""
     gradient = problem.weight(x)[1]
     size = float(np.linalg.norm(gradient))
     active = _active(problem, x, places)
     if not size or not active:
         return Optimality(1.0 if size else 0.0)
     slopes = np.stack([slope for _, slope in active], axis=1)
-    # The residual that nnls returns may be 0.0 where much is left (scipy/scipy#25389).
+    # The residual is recomputed, because nnls may wrongly return 0.0 (scipy/scipy#25389).
     multipliers, _ = nnls(slopes, -gradient)
     left = float(np.linalg.norm(slopes @ multipliers + gradient))
     named = zip((name for name, _ in active), multipliers, strict=True)
@@ -226,7 +230,9 @@ def optimality(problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
 def _active(
     problem: WeightProblem, x: Array, places: tuple[StressPlace, ...]
 ) -> list[tuple[str, Array]]:
-    """Return active constraints and the gradients of functions that must not be positive."""
+    """Return the names of the active constraints, each with the gradient of its function, which
+    must not be positive.
+    """
     out = [
         (p.name, p.slope) for p in places if p.value >= -ACTIVE_TOLERANCE and p.slope is not None
     ]
@@ -250,16 +256,16 @@ def _active(
 def _merit(problem: WeightProblem, x: Array, stress: float) -> float:
     """Return the merit of a point.
 
-    stress: logarithm of the largest stress over the allowed one.
+    stress: logarithm of the largest ratio of stress to allowed stress.
     """
     return (
         problem.weight(x)[0]
         + STRESS_PENALTY * max(0.0, stress)
-        + GEOMETRY_PENALTY * _broken(problem, x)
+        + GEOMETRY_PENALTY * _violation(problem, x)
     )
 
 
-def _broken(problem: WeightProblem, x: Array) -> float:
+def _violation(problem: WeightProblem, x: Array) -> float:
     """Return the largest violation of geometric limits."""
     return max(0.0, -float(problem.limits(x)[0].min(initial=0.0)))
 
@@ -271,18 +277,16 @@ def _step(
     tangents: Tangents,
     radius: float,
 ) -> tuple[Array, float]:
-    """Return the best step by the linearised places, and the reduction of the merit that it
-    promises.
-    """
+    """Return the best step for the linearised places, and the predicted reduction of the merit."""
     values, gradients = tangents.at(x, places)
     n, count = len(x), len(problem.limits(x)[0])
     lower, upper = problem.bounds
 
-    # The last two variables are what stresses and geometric limits exceed.
+    # The last two variables are the excess of the stresses and of the geometric limits.
     def merit(y: Array) -> tuple[float, Array]:
         value, slope = problem.weight(y[:n])
-        more = STRESS_PENALTY * float(y[n]) + GEOMETRY_PENALTY * float(y[n + 1])
-        return value + more, np.append(slope, [STRESS_PENALTY, GEOMETRY_PENALTY])
+        penalty = STRESS_PENALTY * float(y[n]) + GEOMETRY_PENALTY * float(y[n + 1])
+        return value + penalty, np.append(slope, [STRESS_PENALTY, GEOMETRY_PENALTY])
 
     def limits(y: Array) -> Array:
         geometric = problem.limits(y[:n])[0] + y[n + 1]
@@ -300,7 +304,7 @@ def _step(
     some: Any = {"type": "ineq", "fun": limits, "jac": slopes}
     optimum = minimize(
         merit,
-        np.append(x, [excess(x), _broken(problem, x)]),
+        np.append(x, [excess(x), _violation(problem, x)]),
         jac=True,
         bounds=[*box, (0.0, None), (0.0, None)],
         constraints=some,

@@ -1,4 +1,4 @@
-"""Other values of a pin's dimensions in a study: in its content and in its text."""
+"""Changes of a pin's dimensions in a study: in its content and in its text."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from pinstress.explore.size.scaled_study import (
 from pinstress.study.reading.file import Study, with_raw, with_value
 from pinstress.study.schema.units import UnitSystem, to_si
 
-PATH_PROBE_STEP = 1e-3  # of a dimension, to see where it is
-# Where rounding up is on the safe side
+PATH_PROBE_STEP = 1e-3  # relative change of a dimension that shows where it is in the study
+# 1 where rounding up is on the safe side, -1 where rounding down is
 ROUNDING_DIRECTIONS = {"diameters": 1, "bores": -1, "fillets": -1}
 
 Path = tuple[str | int, ...]
@@ -31,9 +31,9 @@ Values = Mapping[str, Mapping[str, float]]  # m, by pin and by key of a dimensio
 
 
 def paths_of(pin: Pin, dimension: Dimension) -> tuple[Path, ...]:
-    """Return the places of a dimension in the pin's table.
+    """Return the paths of a dimension in the pin's table.
 
-    For both ends of a segment after "profile" and k, the index of the end follows the key.
+    In the path of a profile segment, "profile" and k, the index of the end follows the key.
     """
     key = dimension.key
     if key.partition("[")[0] in ("meridian", "bore_meridian"):
@@ -59,29 +59,30 @@ def _in_profile(pin: Pin, other: Pin) -> Iterator[Path]:
 def study_with(
     study: Study, raw: dict[str, Any], pin: str, values: Sequence[tuple[tuple[Path, ...], float]]
 ) -> Study:
-    """Return the study with dimensions of a pin at some places, m.
+    """Return the study with other dimensions of a pin.
 
-    raw: its content, as from raw_study.
+    raw: the content of the study, as from raw_study. values: the paths of each dimension and its
+    value, m.
 
-    Raises: InputError for a shape that cannot be.
+    Raises: InputError for an impossible shape.
     """
-    metre = study.system.factor("length")
+    length_unit = study.system.factor("length")
     for paths, value in values:
         for path in paths:
             where = _as_written(raw["pin"][pin], path)
-            raw = with_value(raw, ("pin", pin, *where), value / metre)
+            raw = with_value(raw, ("pin", pin, *where), value / length_unit)
     return with_raw(study, raw)
 
 
 def _as_written(table: Any, path: Path) -> Path:
-    """Drop the index of an end where one number stands for both."""
+    """Return a path without the index of an end, if one number stands for both ends."""
     here: Any = table
     for k, part in enumerate(path):
         here = value_of(here)
         if not isinstance(here, dict | list):
             return path[:k]
         if isinstance(here, dict) and part not in here:
-            return path  # of a lug that is only in lug_defaults
+            return path  # a lug that is stated only in lug_defaults
         here = here[part]  # type: ignore[index]
     return path
 
@@ -93,13 +94,14 @@ def written_study(
     step: float | None = None,
     required: float | None = None,
 ) -> Study:
-    """Return the study with other dimensions in its text, and all that depends on them.
+    """Return the study with other dimensions in its text, and with all values that depend on them.
 
-    shapes: pins by name as they are, with the dimensions that change.
-    step: step to which diameters are rounded up, m; without it, all are rounded to four digits,
-    diameters up, bores and fillets down.
+    shapes: the pins as given, by name, with the dimensions that change.
+    step: step to which diameters are rounded up, m. Without it, all dimensions are rounded to four
+    digits, diameters up, bores and fillets down.
+    required: the required safety factor to write; None to leave it.
 
-    Raises: InputError for a shape that cannot be.
+    Raises: InputError for an impossible shape.
     """
     document: Any = tomlkit.parse(study.text)
     for name, (pin, dimensions) in shapes.items():
@@ -115,10 +117,10 @@ def written_study(
 def _write(
     table: Any, path: Path, value: float, key: str, system: UnitSystem, step: float | None
 ) -> None:
-    """Write a value at the path of a number.
+    """Write a value, m, at the path of a number.
 
-    Places of a dimension in different units stay equal: all get the value rounded in the study's
-    unit. The radius of a corner is rounded to half a step.
+    If a dimension is written in several places in different units, all get the value rounded in the
+    study's unit and so remain equal. The radius of a corner is rounded to half a step.
     """
     here: Any = table
     for part in path[:-1]:
@@ -129,18 +131,18 @@ def _write(
     if math.isclose(value, to_si(old, "length", system), rel_tol=1e-12):
         return
     unit, one = unit_of(old, "length", system)
-    metre = system.factor("length")
-    steps, up = rounding_step(key, step, metre), ROUNDING_DIRECTIONS[kind_of(key)]
-    number = rounded(value / metre, steps, up) * metre / one
+    length_unit = system.factor("length")
+    steps, up = rounding_step(key, step, length_unit), ROUNDING_DIRECTIONS[kind_of(key)]
+    number = rounded(value / length_unit, steps, up) * length_unit / one
     if not math.isclose(number * one, to_si(old, "length", system), rel_tol=1e-12):
         replace_number(here, last, float(f"{number:.12g}"), unit)
 
 
-def rounding_step(key: str, step: float | None, metre: float) -> float | None:
+def rounding_step(key: str, step: float | None, length_unit: float) -> float | None:
     """Return the step, in the study's unit, to which a dimension is rounded; None for no step.
 
-    step: to which diameters are rounded, m. metre: a metre in the study's unit.
+    step: step to which diameters are rounded, m. length_unit: the study's unit of length, m.
     """
     if step is None or kind_of(key) != "diameters":
         return None
-    return (step / 2.0 if key.startswith("meridian") else step) / metre
+    return (step / 2.0 if key.startswith("meridian") else step) / length_unit

@@ -1,4 +1,4 @@
-"""A pin of a trial study, solved roughly, quickly or as a run solves it."""
+"""A pin of a trial study, solved roughly, quickly, or fully as in a run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
 
-# Of the largest stress: cases with less are solved until it is decided that they reach the factor
+# Cases whose stress is below this share of the largest are solved only until it is decided that
+# they reach the factor
 COUNTING_SHARE = 0.5
 
 Tell = Callable[[str], None]
@@ -31,7 +32,7 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class FullSolution:
-    """The tasks of a pin as a run solves them, and the outcomes of the first ones, which count."""
+    """A pin solved as in a run: the plan, and the outcomes of its first tasks, which count."""
 
     plan: Plan
     outcomes: tuple[PinOutcome, ...]
@@ -44,12 +45,12 @@ class FullSolution:
 
 @dataclass(frozen=True)
 class PinAnswer:
-    """The factors of a pin by one solution.
+    """The result of one solution of a pin.
 
-    trial: its factors.
+    trial: the factors.
     worst: the maximum that decides the factor.
-    counting: the cases whose stress comes near the largest.
-    solution: of a full solution only.
+    counting: the cases whose stress is near the largest.
+    solution: for a full solution only, else None.
     """
 
     trial: PinTrial
@@ -60,13 +61,13 @@ class PinAnswer:
 
 @dataclass(frozen=True)
 class SizedStudy:
-    """The study in which a pin is tried.
+    """The study in which trial sizes of a pin are solved.
 
-    plan: of the study as it is.
-    others: scales of the pins so far.
+    plan: of the study as given.
+    others: scales of the pins so far, by name.
     required: the factor to reach.
-    memo: of flexibilities and meshes that trials have in common.
-    more: by case, times the factor that requirements demand there, as SizingGoal has it.
+    memo: flexibilities and meshes that trials share.
+    multiples: multiples of the factor that requirements demand, by case, as in SizingGoal.
     """
 
     plan: Plan
@@ -75,18 +76,19 @@ class SizedStudy:
     others: Mapping[str, float]
     standard: StandardDiameters | None = None
     memo: Memo = field(default_factory=Memo)
-    more: Mapping[str, float] = field(default_factory=dict)
+    multiples: Mapping[str, float] = field(default_factory=dict)
 
     def at(self, scale: float, rounded: bool = False) -> Study:
         """Return the study with the pin at a scale.
 
-        rounded: to standard diameters, if there are any.
+        rounded: whether to round to standard diameters, if there are any.
 
-        Raises: InputError for a shape that cannot be, NoSizeError for want of a standard diameter.
+        Raises: InputError for an impossible shape, NoSizeError if no standard diameter is large
+        enough.
         """
         standard = self.standard if rounded else None
         scales = {**self.others, self.pin: scale}
-        required = None if self.more else self.required
+        required = None if self.multiples else self.required
         return resized_study(self.plan.study, scales, standard, required)
 
     @property
@@ -97,12 +99,13 @@ class SizedStudy:
     def quick(
         self, scale: float, accuracy: Accuracy, cases: tuple[str, ...] | None, tell: Tell
     ) -> PinAnswer:
-        """Solve a pin without what a full solution knows of its error.
+        """Solve a pin without the error estimates of a full solution.
 
-        A full solution will have an error within the tolerance, which is counted.
+        Errors are limited to the tolerance, or assumed as large in contact, since a full solution
+        will have an error within it (`design_stresses`).
 
-        accuracy: "rough", on few cells of contact, or "quick".
-        cases: by default all.
+        accuracy: "rough", with few contact cells, or "quick".
+        cases: names of the load cases; all by default.
         """
         trial = self.at(scale)
         plan = self._plan(trial, cases)
@@ -119,12 +122,12 @@ class SizedStudy:
             for task in plan.tasks
             for solution in solutions(trial, task, requirement, tell, self.memo)
         ]
-        return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.more)
+        return _answer(scale, accuracy, peaks, plan.tasks, tolerance, self.multiples)
 
     def full(self, scale: float, counting: tuple[str, ...], tell: Tell) -> PinAnswer:
-        """Solve the cases that count of a pin as a run does, with standard diameters.
+        """Solve the cases of a pin that count as in a run, with standard diameters.
 
-        counting: their names.
+        counting: the names of these cases.
         """
         plan, rest = self._plan(self.at(scale, rounded=True), None), list[Task]()
         first = plan.tasks
@@ -134,23 +137,23 @@ class SizedStudy:
         return self._full(scale, plan, [judged(plan, task, tell, self.memo) for task in first])
 
     def whole(self, answer: PinAnswer, tell: Tell) -> PinAnswer:
-        """Solve the other cases of a full solution, of which only whether they reach the factor is
-        decided.
+        """Solve the other cases of a full solution, until it is decided whether they reach the
+        factor.
         """
         assert answer.solution is not None
         plan, outcomes = answer.solution.plan, answer.solution.outcomes
         decide = replace(plan, requirement=replace(plan.requirement, goal="decide"))
         left = plan.tasks[len(outcomes) :]
-        more = [judged(decide, task, tell, self.memo) for task in left]
-        return self._full(answer.trial.scale, plan, [*outcomes, *more])
+        others = [judged(decide, task, tell, self.memo) for task in left]
+        return self._full(answer.trial.scale, plan, [*outcomes, *others])
 
     def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
         peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
-        answer = _answer(scale, "full", peaks, plan.tasks, None, self.more)
+        answer = _answer(scale, "full", peaks, plan.tasks, None, self.multiples)
         return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
-        # Only a pin whose weight its linkage carries changes its own loads.
+        # A pin changes its own loads only if the linkage carries its weight.
         loads_of = reused_loads(raw_study(trial), self.memo)
         cases = cases or tuple(self.plan.loads)
         plan = prepare(trial, pins=[self.pin], cases=cases, loads_of=loads_of)
@@ -160,7 +163,7 @@ class SizedStudy:
 
 
 def _split(tasks: list[Task], counting: tuple[str, ...]) -> tuple[list[Task], list[Task]]:
-    """Return the tasks of the cases that count, and those of the others."""
+    """Return the tasks of the cases that count, and the tasks of the other cases."""
     parts: tuple[list[Task], list[Task]] = ([], [])
     for task in tasks:
         for part, counts in zip(parts, (True, False), strict=True):
@@ -175,14 +178,14 @@ def _answer(
     peaks: list[Maximum],
     todo: list[Task],
     tolerance: float | None,
-    more: Mapping[str, float],
+    multiples: Mapping[str, float],
 ) -> PinAnswer:
-    """Return what the maxima of a pin in all cases say.
+    """Return the result of a pin from its maxima in all cases.
 
-    tolerance: largest error that counts, relative; None for the error as it is.
-    more: by case, times the factor that is demanded there; stress counts as often.
+    tolerance: as in `design_stresses`.
+    multiples: multiples of the factor, by case; the stress is multiplied by them.
 
-    Raises: NoSizeError for a pin that is not solved.
+    Raises: NoSizeError if the pin is not solved.
     """
     for peak in peaks:
         if why := why_unsolved(peak):
@@ -190,7 +193,7 @@ def _answer(
         if accuracy == "full" and not peak.bounded:
             raise NoSizeError(f"the error is unknown in case {peak.case}: {peak.note}")
     loaded = [peak for peak in peaks if peak.max_von_mises]
-    acting = [peak for peak in loaded if more.get(peak.case, 1.0)]
+    acting = [peak for peak in loaded if multiples.get(peak.case, 1.0)]
     if not acting:
         which = " in which a factor is required" if loaded else ""
         raise NoSizeError(f"no case{which} loads it")
@@ -198,7 +201,7 @@ def _answer(
     assert strength is not None  # a pin without strength is refused before
     stresses = []
     for peak in acting:
-        times = more.get(peak.case, 1.0)
+        times = multiples.get(peak.case, 1.0)
         of_row, below = design_stresses(peak, tolerance)
         stresses.append((times * of_row, times * below))
     row, below = (max(each) for each in zip(*stresses, strict=True))
@@ -220,13 +223,15 @@ def _answer(
 def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[float, float]:
     """Return the stresses that decide, Pa: of the row and beneath contact, with their errors.
 
-    tolerance: largest error that counts; None for the error as it is.
+    tolerance: None for the errors as found. Otherwise, in contact, this relative error is added to
+    the stresses instead of their own (to a singular one none); without contact it is the largest
+    error that counts.
     """
     if tolerance is None:
         return row_stress(peak), beneath(peak)
     row = (peak.max_von_mises or 0.0) * (1.0 + tolerance * (peak.verdict != "singular"))
     contact = peak.places and peak.places.contact
-    if contact:  # its own error is not known in a trial
+    if contact:  # the error of this stress is not known in a trial
         return row, contact.beneath * (1.0 + tolerance)
     return min(row_stress(peak), row), 0.0
 
@@ -234,6 +239,6 @@ def design_stresses(peak: Maximum, tolerance: float | None = None) -> tuple[floa
 def row_stress(peak: Maximum) -> float:
     """Return the stress of a row that decides, Pa: the maximum with its error.
 
-    A singular maximum decides nothing; it is replaced by that outside the excluded zones.
+    A singular row counts with the maximum outside the excluded zones, without an error.
     """
     return (peak.max_von_mises if peak.verdict == "singular" else peak.upper_end) or 0.0

@@ -1,7 +1,7 @@
-"""The dimensions of a pin that its least weight may change, its geometric limits and its volume.
+"""The variable dimensions of a pin, its geometric limits and its volume, for the least weight.
 
-All diameters, bores and fillets of a body of revolution are linear in the values of its dimensions,
-so that limits and volume follow from these in closed form, with their gradients.
+All diameters, bores and fillets of a body of revolution are linear in the values of its dimensions.
+Limits and volume therefore have closed forms, with their gradients.
 """
 
 from __future__ import annotations
@@ -21,22 +21,22 @@ from pinstress.analysis.remedies.dimensions import dimensions_of
 from pinstress.study.reading.file import Study
 
 DIMENSION_KINDS = "diameters", "bores", "fillets"
-MAX_FACE_SHARE = 0.6  # of a step's height, that its fillet takes at most
-MAX_BAND_SHARE = 0.25  # of a segment's length, that fillets take at most
-MAX_DIMENSION_RATIO = 50.0  # times a dimension, and parts of it
-SHAPE_STEP = 1e-3  # of a dimension, of which shapes are linear
-# Area between a fillet and its corner, of the radius squared
+MAX_FACE_SHARE = 0.6  # largest share of a step's height that its fillet may take
+MAX_BAND_SHARE = 0.25  # largest share of a segment's length that fillets may take
+MAX_DIMENSION_RATIO = 50.0  # largest factor by which a dimension may grow or shrink
+SHAPE_STEP = 1e-3  # relative step to find the rates of a shape, which is linear in a dimension
+# Area between a fillet and its corner, over the radius squared
 FILLET_AREA_FACTOR = 1.0 - math.pi / 4.0
-# Its distance from the sides
+# Distance of the centroid of this area from the sides, over the radius
 FILLET_CENTROID_FACTOR = (10.0 - 3.0 * math.pi) / (12.0 - 3.0 * math.pi)
 
 
 @dataclass(frozen=True)
 class Proportions:
-    """Proportions that a shape must keep, where it has them now.
+    """The proportions that a shape must keep; if it violates one now, the present value counts.
 
-    wall: thickness of walls over the diameter.
-    shoulder: the larger over the smaller diameter of a step.
+    wall: smallest wall thickness over the diameter.
+    shoulder: smallest ratio of the diameters of a step.
     """
 
     wall: float = 0.1
@@ -45,9 +45,10 @@ class Proportions:
 
 @dataclass(frozen=True)
 class Limit:
-    """A sum of dimensions that must not be negative, over its length scale, with a description.
+    """A linear function of the dimensions, relative to its length scale, that must not be negative.
 
-    instead: another limit that suffices, if any.
+    text: a description. constant, slope: value at the present dimensions, and gradient (n,), 1/m.
+    instead: another limit that may hold instead, if any.
     """
 
     text: str
@@ -55,11 +56,11 @@ class Limit:
     slope: Floats
     instead: Limit | None = None
 
-    def at(self, more: Floats) -> tuple[float, Floats]:
-        """Return its value where dimensions are larger by (n,) m, and its gradient."""
-        value = self.constant + float(self.slope @ more)
+    def at(self, growth: Floats) -> tuple[float, Floats]:
+        """Return the value and the gradient for dimensions that are larger by `growth` (n,), m."""
+        value = self.constant + float(self.slope @ growth)
         if self.instead is not None:
-            other, slope = self.instead.at(more)
+            other, slope = self.instead.at(growth)
             if other > value:
                 return other, slope
         return value, self.slope
@@ -67,7 +68,9 @@ class Limit:
 
 @dataclass(frozen=True)
 class _Ends:
-    """Diameters and bores (S, 2) of the ends of segments and fillets (S - 1,) between them, m."""
+    """The diameters and bores (S, 2) at the ends of S segments, and the fillets (S - 1,) between
+    the segments, m.
+    """
 
     outer: Floats
     inner: Floats
@@ -91,9 +94,9 @@ def _fillet(pin: Pin, corner: int) -> float:
 
 
 class VariedShape:
-    """A pin of the study with other values (n,) of its dimensions of the given `kinds`, m.
+    """A pin of the study whose dimensions of the given `kinds` vary; values (n,), m.
 
-    Neighbours of equal diameter or bore stay equal; limits are those of the pin as it is.
+    Adjacent segments of equal diameter or bore remain equal. The limits refer to the pin as given.
     """
 
     def __init__(
@@ -106,7 +109,7 @@ class VariedShape:
 
     @property
     def pin(self) -> Pin:
-        """The pin as it is; only bodies of revolution have dimensions."""
+        """The pin as given, which must be a body of revolution; others have no dimensions."""
         pin = body_of_revolution(self.whole)
         assert pin is not None
         return pin
@@ -121,7 +124,9 @@ class VariedShape:
 
     @cached_property
     def _rates(self) -> tuple[Floats, Floats, Floats]:
-        """Return derivatives of ends (S, 2, n) twice and fillets (S - 1, n), by dimensions."""
+        """The derivatives of diameters (S, 2, n), bores (S, 2, n) and fillets (S - 1, n) by the
+        dimensions.
+        """
         rates = [self._rate(d) for d in self.dimensions]
         return tuple(np.stack([rate[k] for rate in rates], axis=-1) for k in range(3))  # type: ignore
 
@@ -135,20 +140,20 @@ class VariedShape:
         )
 
     def _ends(self, values: Floats) -> _Ends:
-        more, now = values - self.values, self._now
+        growth, now = values - self.values, self._now
         outer, inner, fillets = self._rates
         return _Ends(
-            now.outer + outer @ more, now.inner + inner @ more, now.fillets + fillets @ more
+            now.outer + outer @ growth, now.inner + inner @ growth, now.fillets + fillets @ growth
         )
 
     @cached_property
     def _rest(self) -> float:
-        """Return the present volume apart from segments and fillets, m^3."""
+        """The part of the present volume that `_plain` does not include, m^3."""
         return self.pin.volume - self._plain(self.values)[0]
 
     def part_of_diameter(self, segment: int) -> Floats:
-        """Return the relative growth of a segment's mean diameter for relative growth of the
-        dimensions, (n,).
+        """Return the relative change (n,) of a segment's mean diameter per relative change of each
+        dimension.
         """
         rate = self._rates[0][segment].sum(axis=0) * self.values
         return np.asarray(rate / self._now.outer[segment].sum())
@@ -156,7 +161,8 @@ class VariedShape:
     def volume(self, values: Floats) -> tuple[float, Floats]:
         """Return the volume, m^3, and its gradient (n,), m^2.
 
-        They are exact but for rounded edges and fillets at cones, whose part stays as it is.
+        They are exact except for rounded edges and fillets at cones, whose share of the volume is
+        constant here.
         """
         value, slope = self._plain(values)
         return value + self._rest, slope
@@ -181,18 +187,18 @@ class VariedShape:
         return total, slope
 
     def _thinner(self, corner: int) -> tuple[int, int]:
-        """Return the end of a segment with the smaller present diameter at a corner."""
+        """Return the segment and its end that have the smaller present diameter at a corner."""
         left, right = self._now.outer[corner, 1], self._now.outer[corner + 1, 0]
         return (corner, 1) if left <= right else (corner + 1, 0)
 
     @cached_property
     def geometric(self) -> tuple[Limit, ...]:
-        """Return all limits but those of single dimensions."""
+        """All geometric limits, without the bounds of single dimensions."""
         limits = [*self._steps(), *self._walls(), *self._along()]
         return tuple(x for x in limits if np.abs(x.slope).max(initial=0.0) > 1e-9)
 
     def at_limits(self, values: Floats) -> tuple[Floats, Floats]:
-        """Return all limits (m,), relative, negative where they are violated; gradients (m, n),
+        """Return all relative limits (m,), negative where violated, and their gradients (m, n),
         1/m.
         """
         limits = [limit.at(values - self.values) for limit in self.geometric]
@@ -200,8 +206,9 @@ class VariedShape:
         return np.array([value for value, _ in limits]), slopes
 
     def _limit(self, text: str, *parts: tuple[float, float, Floats]) -> Limit:
-        """Return the limit of a sum of factors, present values and rates, over the largest of the
-        parts.
+        """Return the limit that a sum of parts must not be negative, relative to its largest part.
+
+        parts: factor, present value and rates (n,) of each dimension in the sum.
         """
         size = max(abs(factor * value) for factor, value, _ in parts)
         value = sum(factor * value for factor, value, _ in parts) / size
@@ -237,8 +244,8 @@ class VariedShape:
                 yield replace(as_wide, instead=still)
 
     def _walls(self) -> Iterator[Limit]:
-        """Yield limits of every segment's ends, and of every bore with the diameter on the other
-        side.
+        """Yield the limits of the walls at every segment's ends, and of each bore within the
+        diameter on the other side of a corner.
         """
         now, (outer, inner, _) = self._now, self._rates
         pairs = [((k, e), (k, e)) for k in range(len(now.outer)) for e in (0, 1)]
@@ -258,7 +265,7 @@ class VariedShape:
             )  # fmt: skip
 
     def _along(self) -> Iterator[Limit]:
-        """Yield limits of the length of a segment that fillets take."""
+        """Yield the limits of the part of a segment's length that fillets take."""
         now, rates = self._now, self._rates[2]
         for k, segment in enumerate(self.pin.segments):
             here = [c for c in (k - 1, k) if 0 <= c < len(now.fillets)]
@@ -275,7 +282,7 @@ class VariedShape:
 
 
 def kind_of(key: str) -> str:
-    """Return the kind of a dimension; empty for lengths and other radii."""
+    """Return the kind of a dimension by its key; empty for lengths and other radii."""
     last = key.rpartition(".")[2]
     if key.startswith("meridian["):
         return "diameters" if key.endswith("][2]") else ""

@@ -1,14 +1,17 @@
-"""The stresses of a pin with other dimensions, in all cases, and their derivatives where they may
-govern; solved as a run solves them, so that a run confirms them.
+"""The stresses of a pin with changed dimensions in all load cases, and their derivatives.
 
-For a body of revolution the largest stress is found in both halves of each segment, and that of its
-sections; for a pin in contact that of the surface, of sections, and beneath contact, all of which
-must meet the factor. In a row that is singular, stress is read at half the excluded distance, where
-the upper end of the reported range is.
+Stresses are solved as in a run, so that a run confirms them. Derivatives are found where a stress
+may govern.
 
-A pin in contact is searched on rough cells, which take a fifth or less of the time of the finest;
-the difference of usual cells is found where it matters (`sure`), and added to all stresses on the
-rough ones. Cases far below the largest are left out until the pin has changed much.
+For a body of revolution they are the largest stress in both halves of each segment and the largest
+section stress. For a pin in contact they are the largest stress of the surface, of the sections and
+beneath contact; all three must meet the factor. In a singular row stress is read at half the
+excluded distance, where the upper end of the reported range is.
+
+A pin in contact is searched on rough contact cells, which take at most a fifth of the time of the
+finest. The difference to the usual cells is found where it matters (`verified`) and added to all
+stresses on rough cells. Cases whose stress is far below the largest are left out until the pin has
+changed much.
 """
 
 from __future__ import annotations
@@ -43,15 +46,16 @@ from pinstress.study.model.tasks import Task, tasks
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study
 
-GRADIENT_WINDOW = 0.15  # of the logarithm of stress below the largest: where derivatives are found
-UNKNOWN_PLACE_WINDOW = 0.3  # the same of places where they are not yet known
-# Of the largest force in any case: a case whose forces are smaller does not govern
+# Derivatives are found where the logarithm of stress is within this window below the largest
+GRADIENT_WINDOW = 0.15
+UNKNOWN_PLACE_WINDOW = 0.3  # the window for places whose derivatives are not known yet
+# A case whose forces are below this share of the largest force in any case cannot govern
 MIN_FORCE_SHARE = 0.05
-CASE_WINDOW = 1.0  # the logarithm of stress below the largest, from which on a case is left out
-# The logarithm of a dimension's change after which all cases are looked at again
+CASE_WINDOW = 1.0  # a case is left out if its logarithm of stress is this far below the largest
+# All cases are reviewed when the logarithm of any dimension has changed by this
 CASE_REVIEW_DISTANCE = 0.7
-DIMENSION_TOLERANCE = 1e-9  # of a dimension
-# On rough cells of contact: further meshes only follow the steps of pressure between these cells.
+DIMENSION_TOLERANCE = 1e-9  # relative
+# Meshes on rough contact cells; more would only resolve the pressure steps between these cells.
 # Tuned on pin E of studies/landing_gear.toml: a third of the time, and the same weight.
 ROUGH_MESHES = 4
 
@@ -60,13 +64,13 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class SizingProblem:
-    """A pin of a study under loads that do not change.
+    """The problem of sizing a pin of a study under constant loads.
 
-    shape: its shape.
+    shape: the shape of the pin.
     requirement: requirements on the solution.
-    loads: by case, of those in which a factor is required.
-    required: the factor.
-    more: by case, the multiple of the required factor that is needed there, mostly 1.
+    loads: by case, for the cases in which a factor is required.
+    required: the required factor.
+    multiples: the multiple of the required factor that a case needs, by case; usually 1.
     """
 
     study: Study
@@ -75,20 +79,21 @@ class SizingProblem:
     requirement: Requirement
     loads: dict[str, CaseLoads]
     required: float
-    more: dict[str, float]
+    multiples: dict[str, float]
 
     def demanded(self, case: str) -> float:
         """Return the factor that is needed in a case."""
-        return self.required * self.more.get(case, 1.0)
+        return self.required * self.multiples.get(case, 1.0)
 
 
 @dataclass(frozen=True)
 class SolvedPin:
-    """A solved pin with values (n,) of the dimensions, m.
+    """A solved pin.
 
-    places: stresses by the logarithms of the dimensions.
-    governs: the case of the largest of them, over what is allowed there.
-    singular: by case, those of unbounded stress that must not govern.
+    values: (n,) dimensions, m.
+    places: stresses, with derivatives by the logarithms of the dimensions.
+    governs: the case with the largest ratio of stress to allowed stress.
+    singular: the places of unbounded stress that must not govern, with their cases.
     """
 
     values: Floats
@@ -99,26 +104,26 @@ class SolvedPin:
 
     @property
     def every(self) -> tuple[StressPlace, ...]:
-        """Return the places that limit the search."""
+        """All places that limit the search."""
         return (*self.places, *(place for _, place in self.singular))
 
     @property
     def worst(self) -> float:
-        """Return the largest value of these."""
+        """The largest value of all places that limit the search."""
         return worst(self.every)
 
     @property
     def largest(self) -> float:
-        """Return the logarithm of the largest stress, as it counts, over what is allowed."""
+        """The largest value of the bounded places: the logarithm of stress over allowed stress."""
         return worst(self.places)
 
 
 class PinStress:
-    """A solver of a pin with other dimensions.
+    """The solver of a pin with changed dimensions.
 
-    Flexibilities and meshes that designs have in common are found once.
-    in_contact: whether lugs hold it, once solved.
-    watched: cases in which no singularity may govern, none to begin with.
+    Flexibilities and meshes that designs share are computed once.
+    in_contact: whether the pin is held by lugs; known after the first solution.
+    watched: cases in which no singularity may govern; none at first.
     """
 
     def __init__(self, problem: SizingProblem, tell: Tell) -> None:
@@ -128,8 +133,8 @@ class PinStress:
         self._paths = [paths_of(shape.pin, d) for d in shape.dimensions]  # none of other pins
         self._known: set[str] = set()
         self._found: list[SolvedPin] = []
-        self._sure: list[SolvedPin] = []
-        self._finer: dict[str, float] = {}  # what finer cells add to the logarithm, by place
+        self._verified: list[SolvedPin] = []
+        self._finer: dict[str, float] = {}  # amount that finer cells add to the logarithm, by place
         self.in_contact = False
         self.watched: frozenset[str] = frozenset()
         self._singular = SingularPlaces(shape)
@@ -139,7 +144,7 @@ class PinStress:
         self.count = 0  # of designs
 
     def study_at(self, values: Floats) -> Study:
-        """Return the study with other dimensions and all that depends on them.
+        """Return the study with changed dimensions and all values that depend on them.
 
         Raises: InputError.
         """
@@ -152,14 +157,14 @@ class PinStress:
 
     @property
     def solved(self) -> list[SolvedPin]:
-        """Return all designs that were solved, as `at` returns them."""
+        """All solved designs, as `at` returns them."""
         return [self._as_finer(x) for x in self._found]
 
     def at(self, values: Floats, far: float = np.inf) -> SolvedPin:
-        """Solve a design with derivatives at all places that may govern.
+        """Solve a design, with derivatives at all places that may govern.
 
-        far: where the logarithm of the worst stress over what is allowed is larger, only the worst
-        place has derivatives.
+        far: if the worst logarithm of stress over allowed stress is farther from 0 than this, only
+        the worst place gets derivatives.
 
         Raises: ImpossibleError, UndifferentiatedError.
         """
@@ -168,24 +173,24 @@ class PinStress:
             self._found.append(known)
         return self._as_finer(known)
 
-    def sure(self, values: Floats) -> SolvedPin:
-        """Solve a design as a run does, and correct the rough stresses of other designs by the
-        difference.
+    def verified(self, values: Floats) -> SolvedPin:
+        """Solve a design on the cells of a run, and correct the rough stresses of all designs by
+        the difference.
 
         Raises: as `at`.
         """
         rough = self.at(values)
         if not self.in_contact:
             return rough
-        if (known := _among(self._sure, values)) is None:
+        if (known := _among(self._verified, values)) is None:
             solution = self._solved(self._possible(values), None, 0.0, "usual")
             known = replace(solution, values=values)
-            self._sure.append(known)
+            self._verified.append(known)
         before = {p.name: p.value for p in rough.places}
         for place in known.places:
             if place.name in before:
-                more = place.value - before[place.name]
-                self._finer[place.name] = self._finer.get(place.name, 0.0) + more
+                added = place.value - before[place.name]
+                self._finer[place.name] = self._finer.get(place.name, 0.0) + added
         return self._watched(known)
 
     def of(self, study: Study) -> SolvedPin:
@@ -206,9 +211,9 @@ class PinStress:
         return self._watched(replace(solution, places=tuple(places)))
 
     def _possible(self, values: Floats) -> Study:
-        """Return the study with other dimensions.
+        """Return the study with changed dimensions.
 
-        Raises: ImpossibleError for a shape that cannot be.
+        Raises: ImpossibleError for an impossible shape.
         """
         try:
             return self.study_at(values)
@@ -251,7 +256,7 @@ class PinStress:
             window = GRADIENT_WINDOW if part.name in self._known else UNKNOWN_PLACE_WINDOW
             slope = None
             if values is not None and value >= top - (window if abs(top) < far else 0.0):
-                slope = values * self._slope(part) + part.besides
+                slope = values * self._slope(part) + part.added_slopes
                 self._known.add(part.name)
             places.append(StressPlace(part.name, value, slope, part.guess))
         at = np.zeros(0) if values is None else values
@@ -259,7 +264,7 @@ class PinStress:
         return SolvedPin(at, tuple(peaks), tuple(places), governs, tuple(singular))
 
     def _tasks(self, study: Study, values: Floats | None) -> list[Task]:
-        """Return the pin under the cases that may govern."""
+        """Return the tasks of the pin for the cases that may govern."""
         pins, loads = [pin_of(study, self.problem.name)], self.problem.loads
         if values is None:
             chosen = self._cases
@@ -283,7 +288,7 @@ class PinStress:
             raise ImpossibleError(str(error)) from None
 
     def _allowed(self, task: Task, peak: Maximum) -> float:
-        """Return the allowed stress, Pa."""
+        """Return the allowed stress of a row, Pa."""
         strength = task.material.yield_strength
         assert strength is not None  # a pin without strength is refused before
         return strength / self.problem.demanded(peak.case)
@@ -291,7 +296,7 @@ class PinStress:
     def _of_task(
         self, study: Study, task: Task, requirement: Requirement, differentiated: bool
     ) -> Iterator[tuple[Maximum, list[RowPart]]]:
-        """Yield the peaks, each with the stresses of its parts."""
+        """Yield the maximum of each row with the stresses of its parts."""
         if differentiated and not task.pin.revolved:
             raise UndifferentiatedError
         dimensions = self._dimensions(study, task) if differentiated else ()
@@ -320,14 +325,14 @@ class PinStress:
 
 
 def _among(designs: Sequence[SolvedPin], values: Floats) -> SolvedPin | None:
-    """Return the design that was solved with these values; None without one."""
+    """Return the design that was solved with these values; None if there is none."""
     same = (x for x in designs if np.allclose(x.values, values, rtol=DIMENSION_TOLERANCE, atol=0.0))
     return next(same, None)
 
 
 def _size(task: Task, loads: PinLoads) -> float:
-    """Return the largest force of a case, N, with moments as couples of forces over the pin's
-    length.
+    """Return the largest force of a case, N; a moment counts as a couple of forces over the length
+    of the pin.
     """
     arm = task.pin.length
     return float(max(np.abs(loads.forces).max(), np.abs(loads.moments).max(initial=0.0) / arm))

@@ -1,8 +1,8 @@
-"""The stresses of a row that sizing bounds, each with its derivatives by the dimensions.
+"""The stresses of a row that limit the size of a pin, each with its derivatives by the dimensions.
 
-Without lugs they are the largest of both halves of each segment, and that of the sections; in lugs
-that of the surface and that of the sections. All stresses of a surface are raised by the ratio of
-the one that counts to the largest of them.
+Without lugs these are the largest stress in both halves of each segment, and of the sections; in
+lugs, the largest stress of the surface and of the sections. All surface stresses are multiplied by
+the ratio of the surface stress that counts, with its error, to the largest of them.
 """
 
 from __future__ import annotations
@@ -36,11 +36,12 @@ from pinstress.study.reading.file import Study
 
 @dataclass(frozen=True)
 class RowPart:
-    """The largest stress of a part, Pa as it counts, and the function that returns its derivatives.
+    """The largest stress of a part of a row, Pa, as it counts, and its derivatives.
 
-    slopes: gives the derivatives (n,) of its logarithm by the dimensions, 1/m.
-    guess: estimate of these by the logarithms of the dimensions, until they are known.
-    besides: terms that are added to the derivatives of its logarithm by those of the dimensions.
+    slopes: a function that returns the derivatives (n,) of the logarithm of the stress by the
+    dimensions, 1/m.
+    guess: estimate of the derivatives by the logarithms of the dimensions, until they are known.
+    added_slopes: terms to be added to the derivatives by the logarithms of the dimensions.
     """
 
     name: str
@@ -48,18 +49,18 @@ class RowPart:
     stress: float
     slopes: Callable[[], Floats]
     guess: Floats | None = None
-    besides: Floats | float = 0.0
+    added_slopes: Floats | float = 0.0
 
 
 def no_slopes() -> Floats:
-    """Return no derivatives, where none are needed."""
+    """Return an empty array, for parts whose derivatives are not needed."""
     return np.zeros(0)
 
 
 def parts_in_lugs(
     before: Study, study: Study, task: Task, solution: Solution, dimensions: tuple[Dimension, ...]
 ) -> list[RowPart]:
-    """Return the surface and the sections of a row in contact; before: the study as it is."""
+    """Return the surface and the sections of a row in contact; before: the study as given."""
     case = solution.peak.case
     return [
         RowPart(
@@ -73,7 +74,7 @@ def parts_in_lugs(
 
 @dataclass(frozen=True)
 class SizedRow:
-    """A row without lugs of a body of revolution; requirement: on its solution."""
+    """A row of a body of revolution without lugs; requirement: requirements on its solution."""
 
     shape: VariedShape
     requirement: Requirement
@@ -81,9 +82,10 @@ class SizedRow:
     solution: Solution
 
     def parts(self, dimensions: tuple[Dimension, ...], of: PartsOfSection) -> list[RowPart]:
-        """Return its sections and both halves of each segment; all in one where a beam solved it.
+        """Return the sections and both halves of each segment, or a single part if a beam solved
+        the row.
 
-        of: reads the parts of a mesh of the section.
+        of: reads the parts on the mesh.
         """
         peak, answer = self.solution.peak, self.solution.answer
         if not isinstance(answer, HarmonicField):
@@ -100,8 +102,8 @@ class SizedRow:
         section = []
         if stress := ends.get("section"):
             by = partial(self._of_section, solved, dimensions)
-            name, besides = f"{peak.case}, section", self._by_clamps(stress)
-            section = [RowPart(name, peak.case, stress, by, besides=besides)]
+            name, added = f"{peak.case}, section", self._by_clamps(stress)
+            section = [RowPart(name, peak.case, stress, by, added_slopes=added)]
         named = {name: (mask, k // 2) for k, (name, mask) in enumerate(masks)}
         return section + [
             RowPart(
@@ -116,7 +118,9 @@ class SizedRow:
         ]
 
     def _solved(self, answer: HarmonicField) -> SolvedCase:
-        """Return the row's mesh, its zones those of the upper end of the reported range."""
+        """Return the row on its mesh, with the zones that give the upper end of the reported
+        range.
+        """
         peak, zones = self.solution.peak, answer.singularities
         if peak.verdict != "converged" and peak.interval is not None:
             zones = tuple(zone.varied(min(DISTANCE_VARIATIONS)) for zone in zones)
@@ -133,7 +137,7 @@ class SizedRow:
         return _relative(derivatives, dimensions)
 
     def _of_section(self, solved: SolvedCase, dimensions: tuple[Dimension, ...]) -> Floats:
-        """Return the derivatives of the largest stress of sections, at its instant."""
+        """Return the relative derivatives of the largest section stress, at its instant."""
         places, loads = self.solution.peak.places, self.solution.loads
         assert places is not None
         assert places.section is not None
@@ -143,11 +147,11 @@ class SizedRow:
         return _relative(section_derivatives(at, dimensions), dimensions)
 
     def _by_clamps(self, stress: float) -> Floats | float:
-        """Return derivatives that the clamped-span error of a section's stress adds to those of its
-        logarithm.
+        """Return the derivatives that the clamped-span error adds to those of the logarithm of the
+        section stress.
 
-        The error of a beam between two clamps goes with the largest diameter until it reaches its
-        limit.
+        The error of a beam between two clamps is proportional to the largest diameter until it
+        reaches its limit.
         """
         places = self.solution.peak.places
         place = places.section if places else None

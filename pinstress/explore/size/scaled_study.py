@@ -1,4 +1,4 @@
-"""Other diameters in a study's text, while everything else in it stays as it was written."""
+"""Changes of diameters in a study's text; everything else remains as written."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from pinstress.study.reading.file import Study, parse_study
 from pinstress.study.reading.in_python import write_lug
 from pinstress.study.schema.units import UnitSystem, to_si
 
-LENGTH_DIGITS = 4  # of a length that is not rounded to a step
+LENGTH_DIGITS = 4  # significant digits of a length that is not rounded to a step
 LEADING_NUMBER_PATTERN = re.compile(r"\s*[-+]?[0-9_.]+(?:[eE][-+]?[0-9]+)?")
-# Keys of lengths across the axis; 1 where rounding up is on the safe side.
+# Keys of lengths transverse to the axis; 1 where rounding up is on the safe side, else -1.
 TRANSVERSE_LENGTH_KEYS = {
     "diameter": 1,
     "distance": 1,
@@ -39,22 +39,24 @@ def resized_study(
     standard: StandardDiameters | None = None,
     required: float | None = None,
 ) -> Study:
-    """Return the study with pins as `resized` makes them, and with all that depends on them.
+    """Return the study with pins scaled as by `resized`, and with all values that depend on them.
 
-    Stated weights of floating pins change as their shapes' weights do, and eyes that became
-    narrower than [size] eye_ratio of their bores grow.
+    Stated weights of floating pins change by the weight of their shapes, and eyes that have become
+    narrower than [size] eye_ratio times their bores grow.
 
-    Raises: InputError for a shape that cannot be.
+    Raises: InputError for an impossible shape.
     """
     document = resized(study.text, scales, study.system, standard, required)
     return with_what_follows(study, document, scales)
 
 
 def with_what_follows(study: Study, document: tomlkit.TOMLDocument, pins: Iterable[str]) -> Study:
-    """Return a study of another document in which pins have other shapes, with all that depends on
-    these, which is changed in the document, too.
+    """Return the study of a document in which pins have changed shapes, with all values that depend
+    on these shapes updated. The document is updated, too.
 
-    Raises: InputError for a shape that cannot be.
+    study: the study before the change. pins: the names of the changed pins.
+
+    Raises: InputError for an impossible shape.
     """
     before = tomlkit.dumps(document)
     if before == study.text:
@@ -74,14 +76,15 @@ def resized(
     standard: StandardDiameters | None = None,
     required: float | None = None,
 ) -> tomlkit.TOMLDocument:
-    """Return a study's document with pins (by name) scaled across their axis.
+    """Return a study's document with pins scaled transverse to their axis.
 
-    Diameters, bores, fillets, the distances of flats and offsets of passages and holes change;
-    lengths, other sizes of holes and slots stay. Diameters are rounded up, to a standard one or to
-    four digits, bores and fillets down, the latter to no more than their steps; scale 1 without
-    standard diameters changes nothing. Provenance that no longer holds is replaced.
+    Diameters, bores, fillets, the distances of flats and the offsets of passages and holes are
+    scaled; lengths and other sizes of holes and slots are not. Diameters are rounded up, to a
+    standard diameter or to four digits. Bores and fillets are rounded down, fillets to at most the
+    height of their steps. Scale 1 without standard diameters changes nothing. Provenance that no
+    longer holds is replaced.
 
-    required: the study's new required factor of safety, if any.
+    scales: by name of the pin. required: the study's new required safety factor, if any.
     """
     study = tomlkit.parse(text)
     for name, scale in scales.items():
@@ -111,8 +114,8 @@ def resized(
 
 
 def _fit_fillets(pin: Any, system: UnitSystem) -> None:
-    """Reduce the fillets between cylinders of a pin's table that are larger than their steps, which
-    rounded diameters may make smaller.
+    """Reduce the fillets between cylinders of a pin's table that exceed the height of their steps,
+    which rounding of diameters may have reduced.
     """
     for left, right in pairwise(_plain(pin.get("profile", []))):
         owner = left if "fillet" in left else pin
@@ -125,7 +128,7 @@ def _fit_fillets(pin: Any, system: UnitSystem) -> None:
 
 
 def require(document: Any, required: float | None) -> None:
-    """Write a required factor of safety, if any, into a study."""
+    """Write a required safety factor, if any, into a study's document."""
     if required is not None:
         analysis: Any = document.setdefault("analysis", tomlkit.table())
         old = analysis.get("required_safety_factor")
@@ -134,7 +137,7 @@ def require(document: Any, required: float | None) -> None:
 
 
 def moved(text: str, old: Path, new: Path) -> str:
-    """Return a study's text for another folder, from which it names the same files."""
+    """Return a study's text for another folder, with relative paths to the same files."""
     if old.resolve() == new.resolve():
         return text
     document = tomlkit.parse(text)
@@ -149,7 +152,7 @@ def moved(text: str, old: Path, new: Path) -> str:
 
 
 def _files(document: Any) -> Iterator[tuple[Any, str]]:
-    """Return the tables that name a file, each with the key that does."""
+    """Yield the tables that name a file, each with the key of the file name."""
     if "materials" in document:
         yield document, "materials"
     yield from ((pin, "geometry") for pin in document.get("pin", {}).values() if "geometry" in pin)
@@ -160,8 +163,8 @@ def _files(document: Any) -> Iterator[tuple[Any, str]]:
 
 
 def _tables(node: Any) -> Iterator[tuple[Any, str]]:
-    """Return what names a table, with the key that does: cases, drives, laws of forces and springs,
-    and tables of cases that state their columns.
+    """Yield the entries that name a file with a table, each with the key of the file name: cases,
+    drives, laws of forces and springs, and tables of cases that state their columns.
     """
     if isinstance(node, list):
         for entry in node:
@@ -182,7 +185,7 @@ def _states_file(table: Any) -> bool:
 
 
 def _plain(node: Any) -> list[Any]:
-    """Return the entries of an array, also one that comes with its provenance."""
+    """Return the entries of an array, also of one with a provenance."""
     return list(value_of(node))
 
 
@@ -196,8 +199,10 @@ def _reweigh(document: Any, old: Study, new: Study, name: str) -> None:
     joint = None if mechanism is None else mechanism.joint.get(name)
     if not density or joint is None or joint.fixed_in or joint.weight is None:
         return
-    more = weight(pin(new, name), density) - weight(pin(old, name), density)
-    _write(document["mechanism"]["joint"][name], "weight", joint.weight + more, "force", new.system)
+    heavier = weight(pin(new, name), density) - weight(pin(old, name), density)
+    _write(
+        document["mechanism"]["joint"][name], "weight", joint.weight + heavier, "force", new.system
+    )
 
 
 def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
@@ -210,8 +215,8 @@ def _widen_eyes(document: Any, old: Study, new: Study, name: str) -> None:
 
 
 def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
-    """Return the outer diameters, m, that eyes about a pin need, by connection, for those that are
-    given, have become too narrow and may grow.
+    """Return the outer diameters, m, of the eyes around a pin that must grow, by connection: those
+    with a given diameter that have become too narrow and may change.
     """
     out, allowed, table = dict[str, float](), new.table.size, new.table.pin[name]
     for at, lug in table.lug.items():
@@ -220,21 +225,21 @@ def wider_eyes(old: Study, new: Study, name: str) -> dict[str, float]:
         before, after = (hole_in_eye(x, name, at) for x in (old, new))
         least = min(allowed.eye_ratio, lug.outer_diameter / before) * after
         if lug.outer_diameter < least * (1.0 - 1e-9):
-            stated = table.shared_lugs.get(at, at)  # of both ears
+            stated = table.shared_lugs.get(at, at)  # the ear that states the size of both
             out[stated] = max(least, out.get(stated, 0.0))
     return out
 
 
 def hole_in_eye(study: Study, name: str, connection: str) -> float:
-    """Return the diameter of the hole in an eye about a pin, including its bushing, m."""
+    """Return the diameter of the hole in an eye around a pin, m; it includes the bushing."""
     bushing = study.table.pin[name].lug[connection].bushing
     ring = 2.0 * bushing.thickness if bushing else 0.0
     return 2.0 * pin(study, name).band(connection).radius + ring
 
 
 def _numbers(table: Any, key: str) -> list[tuple[Any, Any]]:
-    """Return the places of a key's numbers, each with its key or index: one, or one for each
-    end.
+    """Return the containers of a key's numbers, each with the key or index: one number, or one for
+    each end.
     """
     both = value_of(table[key])
     return [(both, i) for i in range(len(both))] if isinstance(both, list) else [(table, key)]
@@ -251,9 +256,9 @@ def _scale(
 ) -> None:
     """Scale a number of a table.
 
-    up: whether it is rounded up (1) or down (-1).
-    standard: what diameters may be.
-    of_diameter: 1 for a diameter, 0.5 for its half, None for any other length.
+    up: 1 to round up, -1 to round down.
+    standard: the permitted diameters; None for any.
+    of_diameter: 1 for a diameter, 0.5 for a radius, None for any other length.
     """
     old = value_of(table[key])
     size, one = to_si(old, "length", system), unit_of(old, "length", system)[1]
@@ -269,7 +274,7 @@ def _scale(
 def _write(
     table: Any, key: str, si: float, dimension: str, system: UnitSystem, up: int = 1
 ) -> None:
-    """Write a number in SI, in the unit in which the old one is written; up: as in `_scale`."""
+    """Write a number, given in SI, in the unit of the old number; up: as in `_scale`."""
     unit, one = unit_of(value_of(table[key]), dimension, system)
     replace_number(table, key, rounded(si / one, None, up), unit)
 
@@ -289,13 +294,13 @@ def unit_of_diameter(study: Study, name: str, diameter: float) -> float:
 
 
 def unit_of(old: Any, dimension: str, system: UnitSystem) -> tuple[str, float]:
-    """Return the unit in which a value is written, as text, and its SI value."""
+    """Return the unit in which a value is written, as text, and the SI value of the unit."""
     text = LEADING_NUMBER_PATTERN.sub("", old, count=1) if isinstance(old, str) else ""
     return text, to_si(f"1{text}", dimension, system) if text.strip() else system.factor(dimension)
 
 
 def replace_number(table: Any, key: Any, number: float, unit: str) -> None:
-    """Write another number, in the same unit; its source, if it has one, becomes this program."""
+    """Write a new number in the same unit; a provenance, if any, is replaced by this program."""
     old = value_of(table[key])
     new = f"{number:.12g}{unit}" if isinstance(old, str) else number
     if (isinstance(table, dict) and "provenance" in table) or isinstance(table[key], dict):
@@ -313,6 +318,6 @@ def rounded(number: float, step: float | None, up: int) -> float:
     size = abs(number)
     step = step or 10.0 ** (math.floor(math.log10(size)) + 1 - LENGTH_DIGITS)
     count = size / step
-    # What is a whole number of steps but for the last digits stays.
+    # A value that is a whole number of steps except for round-off does not change.
     whole = math.ceil(count - 1e-9) if up > 0 else math.floor(count + 1e-9)
     return math.copysign(float(f"{whole * step:.12g}"), number)

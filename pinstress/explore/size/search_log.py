@@ -1,4 +1,4 @@
-"""The searches of `size --least-weight` that are done, kept as they end."""
+"""The finished searches of `size --least-weight`, which are kept as they end."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from pinstress.explore.size.lightest_pin import Lightest
 
 @dataclass(frozen=True)
 class FinishedSearch:
-    """The result of a pin's search, and the number of the round of searches that it was in."""
+    """The result of a pin's search, and the number of the round to which the search belongs."""
 
     round: int
     lightest: Lightest
 
 
 class SearchLog:
-    """Searches in rounds, the same in every run of a command, so that a round and a pin name one.
+    """The log of searches in rounds. The rounds are the same in every run of a command, so that a
+    round and a pin identify a search.
 
-    done: of an earlier run.
-    keep: called with all that are done after each.
+    done: finished searches of an earlier run.
+    keep: called after each search with all finished searches.
     """
 
     def __init__(
@@ -39,7 +40,7 @@ class SearchLog:
         self._round += 1
 
     def get(self, pin: str) -> Lightest | None:
-        """Return the result of a pin in this round; None where it is not done."""
+        """Return the result of a pin in this round; None if it is not finished."""
         search = self._done.get((self._round, pin))
         return search.lightest if search else None
 

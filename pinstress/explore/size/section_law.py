@@ -1,5 +1,6 @@
-"""The scale of a pin that follows from trials, by secants and the law of its section
-(assess.diameter_law).
+"""The next scale of a pin from its trials, by secants and by the growth law of its section.
+
+The growth law is that of assess.diameter_law.
 """
 
 from __future__ import annotations
@@ -12,8 +13,8 @@ from typing import Literal
 from assess.diameter_law import beneath_exponent
 from pinstress.analysis.remedies.secant import MAX_SLOPE, MIN_SLOPE
 
-# Ratio of scales from which a slope is that of the pin and not of the scatter of meshes: between
-# answers of one accuracy, and of two
+# Smallest ratio of scales at which a slope is not dominated by the scatter of meshes: between
+# results of equal accuracy, and of different accuracy
 MIN_RATIO, MIN_RATIO_MIXED = 1.1, 1.3
 
 Accuracy = Literal["rough", "quick", "full"]
@@ -25,9 +26,9 @@ PLACES: tuple[Where, ...] = ("row", "beneath")
 class PinTrial:
     """A pin's factors at a scale.
 
-    row: the lowest by surface and section.
-    beneath: the lowest by what lies beneath contact, inf without any.
-    exponent: with which the first grows by the law of its section.
+    row: the lowest factor of surface and section.
+    beneath: the lowest factor beneath contact, inf without contact.
+    exponent: the exponent with which `row` grows with the scale, by the law of its section.
     """
 
     scale: float
@@ -42,25 +43,25 @@ class PinTrial:
         return min(self.row, self.beneath)
 
     def at(self, where: Where) -> float:
-        """Return the factor of a place."""
+        """Return the factor at a place."""
         return self.row if where == "row" else self.beneath
 
     def exponent_at(self, where: Where) -> float:
-        """Return the exponent of a place by its law."""
+        """Return the exponent of the factor at a place by its growth law."""
         if where == "row":
             return self.exponent
         return beneath_exponent(self.row, self.beneath, self.exponent)
 
 
 def slope(trials: Sequence[PinTrial], where: Where) -> float:
-    """Return the logarithmic slope of the factor of a place in the scale: that between the last
-    trials that are far enough apart, else that of the law.
+    """Return the logarithmic slope of the factor at a place by the scale: the secant between the
+    last trial and the latest one far enough from it, or else the exponent of the growth law.
     """
     last = trials[-1]
     for before in reversed(trials[:-1]):
         apart = abs(math.log(last.scale / before.scale))
         same = last.accuracy == before.accuracy
-        known = math.isfinite(before.at(where))  # not of foundations, without contact
+        known = math.isfinite(before.at(where))  # false beneath contact for a foundation model
         if known and apart >= math.log(MIN_RATIO if same else MIN_RATIO_MIXED):
             rise = math.log(last.at(where) / before.at(where))
             return rise / math.log(last.scale / before.scale)
@@ -68,8 +69,8 @@ def slope(trials: Sequence[PinTrial], where: Where) -> float:
 
 
 def needed_scale(trials: Sequence[PinTrial], aim: float) -> float:
-    """Return the scale at which all places have a factor, by a secant in logarithms from the last
-    trial.
+    """Return the scale at which all places reach the factor `aim`, by a logarithmic secant from the
+    last trial.
     """
     last = trials[-1]
     scales: list[float] = []

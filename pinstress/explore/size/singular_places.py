@@ -1,10 +1,11 @@
-"""Places of a search for the least weight whose derivatives are estimated: corners and edges where
-stress is unbounded, and points beneath contact.
+"""Places of the search for the least weight whose derivatives are estimated: corners and edges with
+unbounded stress, and points beneath contact.
 
-Where a singular place does not govern in a pin as it is given, its row is decided; were a segment
-of it to shrink until it does, it would not be. So stress in it, but next to its very edge, is kept
-below what is allowed, too. Stress beneath contact must meet the factor like surface and section.
-Derivatives are those of bending to begin with, and learned from one design to the next.
+A row is decided if no singular place governs in the pin as given. If a segment shrank until a
+singular place governed, the row would no longer be decided. Stress in singular zones, except right
+at their edge, is therefore kept below the allowed stress, too. Stress beneath contact must meet the
+factor like that of surface and section. The derivatives are those of bending at first, and are then
+updated from one design to the next.
 
 Source: Broyden, Math. Comp. 19 (1965) 577.
 """
@@ -22,9 +23,9 @@ from pinstress.explore.size.counted import beneath
 from pinstress.explore.size.optimise import StressPlace
 from pinstress.explore.size.pin_shape import VariedShape
 
-STRESS_LOG_MARGIN = 0.05  # of the logarithm of stress, below what is allowed
-DIAMETER_EXPONENT = -3.0  # power of the diameter, where nothing is known
-DESIGN_TOLERANCE = 1e-3  # of dimensions' logarithms: designs that are so near teach nothing
+STRESS_LOG_MARGIN = 0.05  # margin of the logarithm of stress below the allowed stress
+DIAMETER_EXPONENT = -3.0  # power of the diameter with which stress is assumed to change at first
+DESIGN_TOLERANCE = 1e-3  # designs whose dimensions' logarithms are closer give no update
 
 CasePlace = tuple[str, StressPlace]
 
@@ -39,11 +40,11 @@ class SingularPlaces:
     def of(
         self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[CasePlace]:
-        """Yield the singular places of a row under an allowed stress, Pa; above it where one
-        governs.
+        """Yield the singular places of a row. The value of a place that governs is above the
+        allowed stress in any case.
 
-        values: of the dimensions (n,), m; without them only places that govern, without
-        derivatives.
+        allowed: the allowed stress, Pa.
+        values: (n,) dimensions, m; without them only governing places, without derivatives.
         """
         names: set[str] = set()
         for zone in peak.singular_at:
@@ -61,7 +62,7 @@ class SingularPlaces:
     def beneath(
         self, pin: PinLike, peak: Maximum, allowed: float, values: Floats | None
     ) -> Iterator[StressPlace]:
-        """Yield the place beneath contact in a row, likewise."""
+        """Yield the place beneath contact in a row, if there is one; arguments as in `of`."""
         if stress := beneath(peak):
             assert peak.places is not None
             assert peak.places.contact is not None

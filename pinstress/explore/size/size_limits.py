@@ -1,4 +1,6 @@
-"""The size that [size] of a study allows a pin, and what would do where that is too small."""
+"""The largest size that [size] of a study allows a pin, and what would suffice if that is too
+small.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +18,14 @@ from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.reading.file import Study
 from reports.format.numbers import beside_limit, engineering, short
 
-MAX_SHEAR_PLANES = 12  # of an arrangement that is proposed
-MAX_WIDENING = 4.0  # of a lug that is proposed, times its width
+MAX_SHEAR_PLANES = 12  # largest number of shear planes in a proposed arrangement
+MAX_WIDENING = 4.0  # largest proposed width of a lug over its present width
 ENDLESS = math.inf
 
 
 @dataclass(frozen=True)
 class SizeLimit:
-    """The largest scale of a pin.
-
-    reason: the key that sets it, with its value.
-    """
+    """The largest scale of a pin. reason: the key that sets it, with its value."""
 
     scale: float = ENDLESS
     reason: str = ""
@@ -70,9 +69,10 @@ def _bands(study: Study, name: str) -> dict[str, float]:
 
 
 def _down(sized: SizedStudy, diameter: float, now: float) -> float:
-    """Return the largest diameter, m, that can be written and is at most this one; 0 without.
+    """Return the largest diameter, m, that can be written and is at most the given one; 0 if there
+    is none.
 
-    now: the pin's diameter that it replaces, in whose unit it is written, m.
+    now: the present diameter of the pin, m; the new one is written in the same unit.
     """
     unit = unit_of_diameter(sized.plan.study, sized.pin, now)
     if diameter <= 0.0:
@@ -87,9 +87,10 @@ def _length(study: Study, length: float) -> str:
 
 
 def too_small(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximum) -> str:
-    """Explain why a pin does not reach its factor within a limit, and what would do instead.
+    """Return a text that explains why a pin does not reach its factor within a limit, and what
+    would suffice instead.
 
-    trial: at the limit. worst: its largest stress.
+    trial: the trial at the limit. worst: its governing maximum.
     """
     study, required = sized.plan.study, sized.required
     diameters = [limit.scale * d for d in study.table.pin[sized.pin].diameters]
@@ -102,27 +103,27 @@ def too_small(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maxim
 
 
 def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximum) -> Iterator[str]:
-    """Yield what would reach the factor at the limit, each alone.
+    """Yield the changes that would reach the factor at the limit, each one by itself.
 
     Stress is proportional to the loads, and to 1 / time of an impulse. With n shear planes instead
-    of m, moment and shear force of a section are m / n of what they were; beneath contact, pressure
-    is force over diameter and width.
+    of m, the moment and the shear force of a section are m / n of the present ones. Beneath
+    contact, the pressure is force over diameter and width.
     """
     study, required = sized.plan.study, sized.required
-    more = required / trial.factor
+    ratio = required / trial.factor
     strength = study.material_of(sized.pin).yield_strength or 0.0
     stress = study.system.factor("stress")
-    needed = engineering(rounded_up(strength * more / stress, 4))
+    needed = engineering(rounded_up(strength * ratio / stress, 4))
     yield (
         f"a yield strength of {needed} {study.system.stress}, not {engineering(strength / stress)}"
     )
     tasks = [t for t in sized.plan.tasks if t.pin.name == sized.pin and worst.case in t.impulses]
     if tasks:
         time = tasks[0].impulses[worst.case].time
-        needed = f"{engineering(rounded_up(time * more, 4))} {study.system.time}"
+        needed = f"{engineering(rounded_up(time * ratio, 4))} {study.system.time}"
         yield f"an impulse in {worst.case} of {needed}, not {short(time)}"
     else:
-        yield f"{engineering(rounded_down(1.0 / more, 4))} times the loads of {worst.case}"
+        yield f"{engineering(rounded_down(1.0 / ratio, 4))} times the loads of {worst.case}"
     if arrangement := _arrangement(sized, trial):
         yield arrangement
     if limit.scale != ENDLESS:
@@ -136,18 +137,18 @@ def _instead(sized: SizedStudy, limit: SizeLimit, trial: PinTrial, worst: Maximu
 
 
 def _arrangement(sized: SizedStudy, trial: PinTrial) -> str:
-    """Return the shear planes and the width of the lugs that would do, empty where none can be
-    built.
+    """Return a text with the number of shear planes and the width of the lugs that would suffice;
+    empty if such an arrangement is impractical.
     """
     required, parts = sized.required, []
     planes = len(_bands(sized.plan.study, sized.pin)) - 1
     if trial.row < required:
         if planes < 1:
             return ""
-        more = planes + 2 * math.ceil(0.5 * planes * (required / trial.row - 1.0))
-        if more > MAX_SHEAR_PLANES:
+        needed = planes + 2 * math.ceil(0.5 * planes * (required / trial.row - 1.0))
+        if needed > MAX_SHEAR_PLANES:
             return ""
-        parts.append(f"about {more} shear planes, not {planes}, of the same width in all")
+        parts.append(f"about {needed} shear planes, not {planes}, of the same width in all")
     if trial.beneath < required:
         wider = required / trial.beneath
         if wider > MAX_WIDENING:

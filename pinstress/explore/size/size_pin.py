@@ -1,8 +1,8 @@
-"""The smallest diameters of every pin that reach a factor of safety.
+"""The smallest diameters at which a pin reaches a safety factor.
 
-A pin keeps its lengths, which the links set, and its proportions across the axis. The search starts
-from the law of its section and is corrected by secants on quick solutions; the result is solved as
-a run solves it, at most MAX_FULL times.
+The lengths of a pin, which are set by the links, and its transverse proportions do not change. The
+search starts from the growth law of the pin's section and is corrected by secants on quick
+solutions. The result is then solved as in a run, at most MAX_FULL times.
 """
 
 from __future__ import annotations
@@ -42,20 +42,21 @@ from pinstress.study.model.pins import material as material_of
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
-MAX_QUICK, MAX_FULL = 6, 3  # solutions of a pin
-# How much more than the required factor, with its error, is close enough: of pins in contact with
-# lugs, whose full solution takes ten times as long as a quick one and differs from it by -3.3 to
-# 2.3 % (pins of studies/landing_gear.toml, sized for 2 and 10); and of others, half of what counts
-# as close elsewhere, since their error is often as large
+MAX_QUICK, MAX_FULL = 6, 3  # largest numbers of quick and full solutions of a pin
+# Relative excess over the required factor, with its error, that is accepted. For pins in contact
+# with lugs, a full solution takes ten times as long as a quick one and differs from it by -3.3 to
+# 2.3 % (pins of studies/landing_gear.toml, sized for 2 and 10). For other pins, half of the usual
+# tolerance, since their error is often as large
 CONTACT_FACTOR_TOLERANCE = 0.06
 PLAIN_FACTOR_TOLERANCE = 0.5 * FACTOR_TOLERANCE
-# Of that tolerance above the required factor, for only what is not below will do; of pins in
-# contact by quick solutions, where so much leaves their difference from full ones on either side
+# The search aims at this share of the tolerance above the required factor, because a factor below
+# it is not accepted. The second value is for quick solutions of pins in contact; it leaves room for
+# their difference from full solutions on either side
 AIM_SHARE, CONTACT_AIM_SHARE = 0.25, 0.5
-QUICK_STEP = 0.03  # of the scale, which is not worth another quick solution
-# Of the factor, by which quick and full solutions may differ: twice what was measured (above)
+QUICK_STEP = 0.03  # relative change of the scale that is not worth another quick solution
+# Relative difference of the factor between quick and full solutions: twice that measured (above)
 QUICK_ERROR = 0.07
-NEXT_DIAMETER = 1e-6  # relative, beyond a standard diameter
+NEXT_DIAMETER = 1e-6  # relative step beyond a standard diameter to reach the next one
 
 Tell = Callable[[str], None]
 
@@ -64,13 +65,14 @@ Tell = Callable[[str], None]
 class SizingResult:
     """The size of a pin.
 
-    scale: scale at which it reaches the factor, None where it does not, for the reason `why`.
-    before, factor: its factor before, by a rough solution, and then, in the case that governs.
-    verdict: verdict of that case.
-    limited: whether limits of the study forbid the factor.
-    judged: its rows in the full solution.
+    scale: the scale at which the pin reaches the factor; None if it does not, for the reason `why`.
+    before: its factor before sizing, by a rough solution. factor: its factor at the new size, in
+    the governing case.
+    verdict: the verdict of that case.
+    limited: whether limits of the study prevent the factor from being reached.
+    judged: the judgement of the pin in the full solution.
     others: scales of the other pins in that solution.
-    trials, full: number of solutions, and of full ones among them.
+    trials, full: number of all solutions, and of full solutions among them.
     """
 
     pin: str
@@ -88,29 +90,29 @@ class SizingResult:
 
 @dataclass(frozen=True)
 class SizingGoal:
-    """The factor to reach, and the diameters that pins may have, if not any.
+    """The goal of sizing: the required factor, and the permitted diameters (None for any).
 
-    more: by pin and case, times the factor that requirements of the study demand there, 0 for no
-    factor; empty where the factor is that of all.
+    multiples: multiples of the factor that requirements of the study demand, by pin and case; 0 for
+    no required factor. Empty if the factor applies to all.
     """
 
     required: float
     standard: StandardDiameters | None = None
-    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     @property
     def written(self) -> float | None:
-        """The required factor of the new study; None where that keeps its own requirements."""
-        return None if self.more else self.required
+        """The required factor to write into the new study; None if its requirements remain."""
+        return None if self.multiples else self.required
 
     def of_pin(self, pin: str) -> dict[str, float]:
         """Return the multiples of the factor that a pin needs, by case."""
-        return {case: x for (name, case), x in self.more.items() if name == pin}
+        return {case: x for (name, case), x in self.multiples.items() if name == pin}
 
 
 @dataclass
 class _Search:
-    """The solutions of a pin so far."""
+    """A search for the size of a pin, with its solutions so far."""
 
     sized: SizedStudy
     tell: Tell
@@ -143,7 +145,7 @@ class _Search:
         return answer
 
     def whole(self, answer: PinAnswer) -> PinAnswer:
-        """Solve the cases of a full solution that do not count, too."""
+        """Also solve the cases of a full solution that do not count."""
         whole = self.sized.whole(answer, self.tell)
         self.answers = [whole if x is answer else x for x in self.answers]
         return whole
@@ -159,18 +161,18 @@ def size_pin(
 ) -> SizingResult:
     """Size one pin for all cases of a plan.
 
-    others: scales of the pins so far, also of this one, from which its search begins.
-    label: what progress begins with, "pin 2 of 5".
+    others: scales of the pins so far, by name; that of this pin is the start of its search.
+    label: the start of progress messages, "pin 2 of 5".
 
-    Failures are reported in the answer.
+    Failures are reported in the result.
     """
-    more = goal.of_pin(pin)
+    multiples = goal.of_pin(pin)
     problem = why_fixed(plan.study, pin)
-    if more and not any(more.values()):
+    if multiples and not any(multiples.values()):
         problem = "no factor is required of it"
     if problem:
         return SizingResult(pin, why=problem)
-    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, more=more)
+    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, multiples=multiples)
     search = _Search(sized, tell, label or f"pin {pin}")
     result = SizingResult(pin)
     try:
@@ -178,7 +180,7 @@ def size_pin(
         result = replace(result, before=_nominal(plan.study, first.worst))
         result = _verified(search, _quickly(search), result)
     except NoSizeError as error:
-        result = replace(result, why=str(error) + _where(search.answers))
+        result = replace(result, why=str(error) + _beneath_note(search.answers))
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{x.factor:.4g} at {x.scale:.3g}" for x in search.trials) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
@@ -186,29 +188,32 @@ def size_pin(
     return replace(result, trials=len(search.answers), full=len(search.full))
 
 
-def _close(sized: SizedStudy) -> float:
+def _factor_tolerance(sized: SizedStudy) -> float:
     return CONTACT_FACTOR_TOLERANCE if sized.in_lugs else PLAIN_FACTOR_TOLERANCE
 
 
 def _aim(sized: SizedStudy, accuracy: Accuracy) -> float:
-    """Return the factor for which the next scale is chosen by solutions of an accuracy."""
-    if sized.standard is not None:  # more would pass over a diameter that reaches the factor
+    """Return the factor at which the choice of the next scale aims.
+
+    accuracy: of the solutions from which the scale is chosen.
+    """
+    if sized.standard is not None:  # a larger aim would skip a diameter that reaches the factor
         return sized.required * (1.0 + AIM_SHARE * PLAIN_FACTOR_TOLERANCE)
     contact = sized.in_lugs and accuracy == "quick"
     share = CONTACT_AIM_SHARE if contact else AIM_SHARE
-    return sized.required * (1.0 + share * _close(sized))
+    return sized.required * (1.0 + share * _factor_tolerance(sized))
 
 
 def _quickly(search: _Search) -> float:
-    """Return the scale that quick solutions need.
+    """Return the scale that is needed by quick solutions.
 
-    Raises: NoSizeError where no scale will do.
+    Raises: NoSizeError if no scale suffices.
     """
     sized = search.sized
-    required, close = sized.required, _close(sized)
+    required, close = sized.required, _factor_tolerance(sized)
     start = search.trials[0]
     if sized.standard is None and required <= start.factor <= required * (1.0 + close):
-        return start.scale  # as it is
+        return start.scale  # the pin is close enough as given
     aim, limit = _aim(sized, "quick"), largest_scale(sized)
     if limit.scale < MIN_SCALE:
         raise NoSizeError(f"[size] {limit.reason} leaves no room for it")
@@ -227,7 +232,7 @@ def _quickly(search: _Search) -> float:
 def _next(trials: list[PinTrial], aim: float) -> float:
     """Return the scale of the next trial.
 
-    Raises: NoSizeError where larger pins hardly help, or there are none.
+    Raises: NoSizeError if larger diameters hardly help, or if the scale is out of range.
     """
     last, where = trials[-1], governing_place(trials, aim)
     scale = min(needed_scale(trials, aim), MAX_SCALE_STEP * last.scale)
@@ -247,9 +252,10 @@ def _next(trials: list[PinTrial], aim: float) -> float:
 def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResult:
     """Return the smallest size at which a full solution reaches the factor.
 
-    It is corrected by the ratio of factors, or to the next standard diameter.
+    After a full solution that is not accepted, the scale is corrected by a secant, or to the next
+    standard diameter.
 
-    Raises: NoSizeError where none of MAX_FULL full solutions does.
+    Raises: NoSizeError if none of MAX_FULL full solutions reaches the factor.
     """
     sized, limit = search.sized, largest_scale(search.sized)
     required, aim = sized.required, _aim(sized, "full")
@@ -272,7 +278,7 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
             scale = _next_standard(sized, scale)
         else:
             scale = _next(search.trials, aim)
-            # between what is known, where scatter of the error would lead out of it
+            # Stay between the known scales where the scatter of errors would lead out of them.
             most = min((x.scale for x in known), default=math.inf)
             least = max((x.trial.scale for x in search.full if x.trial not in known), default=0.0)
             if not least < scale < most:
@@ -283,19 +289,20 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
 
 
 def _accepted(answer: PinAnswer, search: _Search) -> bool:
-    """Return whether a factor is reached, and closely where diameters may be any: of pins without
-    contact the less so, the more full solutions have missed it already.
+    """Whether a full solution reaches the factor and, if any diameter is permitted, does not exceed
+    it by much. For pins without contact the accepted excess grows with the number of full
+    solutions.
     """
     sized = search.sized
-    close = _close(sized) * (1 if sized.in_lugs else len(search.full))
+    close = _factor_tolerance(sized) * (1 if sized.in_lugs else len(search.full))
     most = math.inf if sized.standard else sized.required * (1.0 + close)
     return sized.required <= answer.trial.factor <= most
 
 
 def _reached(search: _Search, result: SizingResult) -> SizingResult:
-    """Return the smallest size that reached the factor.
+    """Return the result of the smallest size that reached the factor.
 
-    Raises: NoSizeError where none did.
+    Raises: NoSizeError if none did.
     """
     sized = search.sized
     full = sorted(search.full, key=lambda answer: answer.trial.scale)
@@ -333,9 +340,9 @@ def _next_standard(sized: SizedStudy, scale: float) -> float:
     return sized.standard.up(scale * least, unit) * (1.0 + NEXT_DIAMETER) / least
 
 
-def _where(answers: list[PinAnswer]) -> str:
-    """Name the place of the factor where that is not the row's own number, for a pin that was
-    solved.
+def _beneath_note(answers: list[PinAnswer]) -> str:
+    """Return a text that names the stress beneath contact, if the last factor is of that stress;
+    else empty.
     """
     if not answers or beneath(answers[-1].worst) < row_stress(answers[-1].worst):
         return ""
@@ -351,7 +358,7 @@ def _nominal(study: Study, peak: Maximum) -> float:
 
 
 def why_fixed(study: Study, pin: str) -> str:
-    """Return why the diameters of a pin cannot be chosen; empty where they can."""
+    """Return why the diameters of a pin cannot be chosen; empty if they can."""
     table = study.table.pin[pin]
     if table.geometry is not None:
         return FROM_FILE

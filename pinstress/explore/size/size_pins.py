@@ -1,4 +1,4 @@
-"""All pins of a study sized, until the loads of all the others no longer change their factors."""
+"""Sizing of all pins of a study, repeated until the sizes no longer change each other's loads."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ def size_pins(
 ) -> list[SizingResult]:
     """Size the pins of a plan.
 
-    Weights of pins change the loads of others, so a pin is sized again where the loads in the new
-    study could take it below the factor. Weights of links stay.
+    The weight of a pin changes the loads of other pins. A pin is therefore sized again if the loads
+    in the new study could take it below the factor. The weights of links do not change.
 
     before: pins that were sized earlier.
     finished: called with every pin as soon as it is sized.
-    jobs: number of pins sized in parallel here. cluster: where they are sized instead.
+    jobs: number of pins sized in parallel on this machine. cluster: sizes the pins instead.
 
-    Raises: InputError where the cluster is lost.
+    Raises: InputError if the connection to the cluster is lost.
     """
     names = list(dict.fromkeys(task.pin.name for task in plan.tasks))
     order = sorted(names, key=lambda name: _effort(plan, name), reverse=True)  # the longest first
@@ -67,7 +67,7 @@ def _effort(plan: Plan, name: str) -> tuple[bool, int, int, int]:
 
 
 def new_study(study: Study, goal: SizingGoal, sized: Sequence[SizingResult]) -> Study:
-    """Return the study with the sizes of pins."""
+    """Return the study with the new sizes of pins."""
     scales = {result.pin: result.scale for result in sized if result.scale is not None}
     return resized_study(study, scales, goal.standard, goal.written)
 
@@ -112,7 +112,8 @@ def _label(names: list[str], name: str) -> str:
 def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> list[str]:
     """Return the pins whose loads in the new study could take them below the factor.
 
-    Stress grows at most with the largest force, or with what is added to it at any instant.
+    The stress is assumed to grow at most by the ratio of the largest change of a force at any
+    instant to the largest force.
     """
     new, cases = new_study(plan.study, goal, sized), list(plan.loads)
     content = content_of_loads(new, raw_study(new))
@@ -130,10 +131,10 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
         if content_of_loads(solved, raw_study(solved)) == content:
             continue
         after = after or all_loads(new, cases)
-        more = goal.of_pin(result.pin)
+        multiples = goal.of_pin(result.pin)
         change = changes_of_load(new, result.pin, all_loads(solved, cases), after)
         if any(
-            factor / (1.0 + change.get(case, 0.0)) < goal.required * more.get(case, 1.0)
+            factor / (1.0 + change.get(case, 0.0)) < goal.required * multiples.get(case, 1.0)
             for case, factor in result.judged.cases
         ):
             out.append(result.pin)
@@ -143,7 +144,7 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
 def changes_of_load(
     study: Study, pin: str, before: Mapping[str, CaseLoads], after: Mapping[str, CaseLoads]
 ) -> dict[str, float]:
-    """Return the relative change of the loads on a pin, by case."""
+    """Return the largest change of a force on a pin relative to its largest force, by case."""
     out = {}
     for case, loads in after.items():
         named = [c for c in pin_of(study, pin).connections if c in loads.reactions.connections]
@@ -155,8 +156,8 @@ def changes_of_load(
         )
         largest = float(np.linalg.norm(old, axis=-1).max())
         if old.shape == new.shape:
-            more = float(np.linalg.norm(new - old, axis=-1).max())
+            change = float(np.linalg.norm(new - old, axis=-1).max())
         else:  # the motion is resolved at other instants
-            more = abs(float(np.linalg.norm(new, axis=-1).max()) - largest)
-        out[case] = more / largest if largest else float(more > 0.0)
+            change = abs(float(np.linalg.norm(new, axis=-1).max()) - largest)
+        out[case] = change / largest if largest else float(change > 0.0)
     return out

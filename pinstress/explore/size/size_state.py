@@ -1,7 +1,7 @@
-"""What a size has finished, in a folder beside the new study, so that it can be resumed: pins, or
-searches of the lightest ones.
+"""The finished part of a `size` command, kept in a folder so that the command can be resumed.
 
-The folder is locked by its writer; the lock is released however the writer ends.
+The folder is next to the new study. It has the sized pins, or the searches for the lightest pins.
+The writer locks the folder; the lock is released however the writer ends.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from pinstress.study.reading.inputs import inputs
 
 STATE_SUFFIX = ".unfinished"
 PINS_FILE = "pins"  # in the folder
-# What a damaged file ends in; RuntimeError where it says to be encrypted, or packed in another way
+# The errors of a damaged file; RuntimeError if it claims to be encrypted or packed differently
 DAMAGED = (OSError, ValueError, KeyError, EOFError, RuntimeError, zipfile.BadZipFile)
 
 T = TypeVar("T")
@@ -34,10 +34,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class FinishedPins:
-    """Finished pins.
-
-    identity: a hash of all on which they depend.
-    """
+    """The finished pins. identity: a hash of all data on which they depend."""
 
     identity: str
     done: tuple[SizingResult, ...]
@@ -45,24 +42,24 @@ class FinishedPins:
 
 @dataclass(frozen=True)
 class FinishedSearches:
-    """Finished searches, as FinishedPins."""
+    """The finished searches; identity: as in FinishedPins."""
 
     identity: str
     done: tuple[FinishedSearch, ...]
 
 
 def identity(study: Study, goal: object, pins: Iterable[str]) -> str:
-    """Return a hash of all on which the sizes of pins depend."""
+    """Return a hash of all data on which the sizes of pins depend."""
     asked = study.text, inputs(study), goal, sorted(pins), program()
     return hashlib.sha256(repr(asked).encode()).hexdigest()
 
 
 class SizeState(Generic[T]):
-    """The folder of a size that has not ended.
+    """The folder of a `size` command that has not ended.
 
-    target: the new study.
-    identity: of the size.
-    kind: of what it has finished, FinishedPins or FinishedSearches.
+    target: the file of the new study.
+    identity: the hash of this command's data.
+    kind: the record of its finished part, FinishedPins or FinishedSearches.
     """
 
     def __init__(self, target: Path, identity: str, kind: type[Any]) -> None:
@@ -74,7 +71,7 @@ class SizeState(Generic[T]):
 
     @property
     def exists(self) -> bool:
-        """Whether a size has begun there; an empty folder is of one that was killed before."""
+        """Whether a `size` has begun there; an empty folder is left by one killed before that."""
         try:
             written = {*os.listdir(self.path)} - {_partial(self._pins).name}
             return self.path.is_symlink() or bool(written)
@@ -84,9 +81,10 @@ class SizeState(Generic[T]):
             return False
 
     def begin(self) -> None:
-        """Create and lock the folder, in which nothing is finished.
+        """Create and lock the folder, with nothing finished.
 
-        Raises: InputError where there is one already, or it cannot be written.
+        Raises: InputError if there is an unfinished `size` already, or the folder cannot be
+        written.
         """
         try:
             with suppress(FileExistsError):
@@ -110,9 +108,10 @@ class SizeState(Generic[T]):
             raise
 
     def read(self) -> tuple[T, ...]:
-        """Lock the folder and return what is finished.
+        """Lock the folder and return the finished part.
 
-        Raises: InputError where there is nothing to resume, another size, or one that is going on.
+        Raises: InputError if there is nothing to resume, if the folder is damaged or belongs to
+        another `size`, or if one is still running.
         """
         if not self.exists:
             raise InputError(
@@ -140,7 +139,7 @@ class SizeState(Generic[T]):
     def _lock(self) -> None:
         """Lock the folder until `close`.
 
-        Raises: InputError while another size is writing, OSError.
+        Raises: InputError while another `size` is writing; OSError.
         """
         if self._release is not None:
             return
@@ -154,9 +153,9 @@ class SizeState(Generic[T]):
             ) from None
 
     def write(self, done: tuple[T, ...]) -> None:
-        """Replace what is finished; the file is complete at any time.
+        """Replace the finished part; the file is complete at any time.
 
-        Raises: InputError where it cannot be written.
+        Raises: InputError if the file cannot be written.
         """
         content = pack(self._kind(self._identity, done))
         try:
@@ -165,7 +164,7 @@ class SizeState(Generic[T]):
             raise self._cannot_write(error) from None
 
     def _cannot_write(self, error: OSError) -> InputError:
-        """Return the error that names the user's file: nobody has named the folder."""
+        """Return the error that names the user's file, since the user has not named the folder."""
         refused = cannot_write(self._target, error)
         text = f"{refused}; pins that are done are kept beside it, in {self.path.name}"
         return InputError(text, code=refused.code)
@@ -186,7 +185,7 @@ class SizeState(Generic[T]):
 def replace_file(path: Path, content: bytes) -> None:
     """Write a file in one step.
 
-    Raises: InputError where it cannot be written.
+    Raises: InputError if the file cannot be written.
     """
     try:
         _replace(path, content)
@@ -204,11 +203,11 @@ def _replace(path: Path, content: bytes) -> None:
         partial.write_bytes(content)
         os.replace(partial, path)
     except BaseException:
-        with suppress(OSError):  # as of a name that is too long
+        with suppress(OSError):  # for example a name that is too long
             partial.unlink(missing_ok=True)
         raise
 
 
 def _partial(path: Path) -> Path:
-    """Return the file in which another is written; a process that is killed leaves it."""
+    """Return the temporary file in which a file is written; a killed process leaves it behind."""
     return path.with_name(f".{path.name}.partial")

@@ -23,15 +23,15 @@ PREFERRED_NUMBERS: dict[str, tuple[float, ...]] = {
         5.6, 6.0, 6.3, 6.7, 7.1, 7.5, 8.0, 8.5, 9.0, 9.5,
     ),
 }  # fmt: skip
-SAME = 1e-9  # relative: a diameter that is standard but for the last digits stays
+SAME = 1e-9  # relative: a diameter this close to a standard one is standard
 
 
 @dataclass(frozen=True)
 class StandardDiameters:
-    """The diameters that a pin may have; exactly one of the three kinds is given.
+    """The permitted diameters of a pin; exactly one of the three is given.
 
-    step: they are its multiples, m.
-    preferred: a decade of numbers, in the unit in which a diameter is written.
+    step: the diameters are multiples of this, m.
+    preferred: one decade of preferred numbers, in the unit in which a diameter is written.
     listed: the diameters themselves, m.
     """
 
@@ -42,9 +42,9 @@ class StandardDiameters:
     def up(self, diameter: float, unit: float) -> float:
         """Return the smallest standard diameter that is at least `diameter`, m.
 
-        unit: in which it is written, m.
+        unit: the unit in which it is written, m.
 
-        Raises: NoSizeError where a list has none.
+        Raises: NoSizeError if a list has none.
         """
         least = diameter * (1.0 - SAME)
         fitting = [d for d in self._near(diameter, unit) if d >= least]
@@ -53,12 +53,12 @@ class StandardDiameters:
         return min(fitting)
 
     def down(self, diameter: float, unit: float) -> float:
-        """Return the largest standard diameter that is at most `diameter`, m; 0 without one."""
+        """Return the largest standard diameter that is at most `diameter`, m; 0 if none is."""
         most = diameter * (1.0 + SAME)
         return max((d for d in self._near(diameter, unit) if d <= most), default=0.0)
 
     def _near(self, diameter: float, unit: float) -> tuple[float, ...]:
-        """Return standard diameters, m, among them the next on both sides of one."""
+        """Return standard diameters, m, which include the nearest ones on both sides."""
         if self.step is not None:
             count = round(diameter / self.step)
             return tuple(n * self.step for n in range(max(count - 1, 1), count + 2))
@@ -70,8 +70,9 @@ class StandardDiameters:
 
 
 def standard_diameters(table: SizeTable, step: float | None = None) -> StandardDiameters | None:
-    """Return the diameters that pins may have by a study's [size] and a step, m, of the command
-    line, which comes first; None for any.
+    """Return the permitted diameters of pins; None if any is permitted.
+
+    step: the step of the command line, m, which replaces the series of a study's [size].
     """
     if step is not None:
         return StandardDiameters(step=step)

@@ -1,4 +1,4 @@
-"""The search for the least weight of a pin: from a scale of the whole to dimensions as written."""
+"""The search for the least weight of a pin: from scaling the whole pin to written dimensions."""
 
 from __future__ import annotations
 
@@ -26,15 +26,16 @@ from pinstress.explore.size.written_dimensions import (
     rounded_values,
 )
 
-STRESS_MARGIN = 0.004  # of the stress, below what is allowed: noise of meshes, and rounding
-WEIGHT_CONVERGENCE = 2e-3  # of the weight: what meshes are worth
-SCALE_BRACKET_TOLERANCE = 5e-3  # a bracket of scales that is not looked into
-SLOPE_RANGE = 0.06  # from the factor (its logarithm): nearer, its slope says which scale reaches it
-# Of the stress of a pin in contact, below what is allowed: near enough
+STRESS_MARGIN = 0.004  # relative margin below the allowed stress for mesh noise and rounding
+WEIGHT_CONVERGENCE = 2e-3  # relative tolerance of the weight, which meshes justify
+SCALE_BRACKET_TOLERANCE = 5e-3  # a narrower bracket of logarithmic scales is not searched
+# Distance from the factor, in its logarithm, within which its slope gives the scale that reaches it
+SLOPE_RANGE = 0.06
+# Accepted relative distance below the allowed stress, for a pin in contact
 CONTACT_STRESS_TOLERANCE = 0.05
 # STRESS_MARGIN and WEIGHT_CONVERGENCE in contact, where meshes and cells scatter
 CONTACT_STRESS_MARGIN, CONTACT_WEIGHT_CONVERGENCE = 0.015, 1e-2
-MAX_CORRECTIONS = 3  # of what rough cells say
+MAX_CORRECTIONS = 3  # largest number of corrections of the stresses on rough cells
 MAX_SCALINGS = 10
 MAX_REPAIRS = 4
 
@@ -46,23 +47,23 @@ class WeightGoal:
     required: the factor.
     vary: kinds of dimensions (DIMENSION_KINDS) that may change.
     limits: geometric limits.
-    step: step to which diameters are rounded up, m.
-    more: as SizingGoal has it.
-    likely: by pin and case, times that factor, which the nominal design needs so that a less likely
-    one reaches it.
+    step: step to which diameters are rounded up, m; None for no step.
+    multiples: as in SizingGoal.
+    extra_multiples: further multiples of the factor, by pin and case, that the nominal design needs
+    so that less likely designs reach the factor.
     """
 
     required: float
     vary: tuple[str, ...] = DIMENSION_KINDS
     limits: Proportions = field(default_factory=Proportions)
     step: float | None = None
-    more: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    likely: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    extra_multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
     @property
     def written(self) -> float | None:
-        """The required factor of the new study; None where that keeps its own requirements."""
-        return None if self.more else self.required
+        """The required factor to write into the new study; None if its requirements remain."""
+        return None if self.multiples else self.required
 
     @property
     def standard(self) -> StandardDiameters | None:
@@ -70,16 +71,16 @@ class WeightGoal:
         return None if self.step is None else StandardDiameters(self.step)
 
     def of_pin(self, pin: str) -> dict[str, float]:
-        """Return the multiples of the factor that a pin needs, by case, 0 for none."""
+        """Return the multiples of the factor that a pin needs, by case; 0 for no factor."""
         return {
-            place[1]: self.more.get(place, 1.0) * self.likely.get(place, 1.0)
-            for place in self.more.keys() | self.likely.keys()
+            place[1]: self.multiples.get(place, 1.0) * self.extra_multiples.get(place, 1.0)
+            for place in self.multiples.keys() | self.extra_multiples.keys()
             if place[0] == pin
         }
 
 
 class WeightSearch:
-    """The pin as a problem for pinstress.explore.size.optimise."""
+    """The least weight of a pin as a WeightProblem of pinstress.explore.size.optimise."""
 
     def __init__(self, problem: SizingProblem, stress: PinStress, aim: WeightGoal) -> None:
         self.problem, self.stress, self.aim = problem, stress, aim
@@ -104,14 +105,14 @@ class WeightSearch:
         return self.raised(self.stress.at(np.exp(x)))
 
     def raised(self, solved: SolvedPin) -> tuple[StressPlace, ...]:
-        """Return the stresses of places with a margin added, so that the search aims a little
-        low.
+        """Return the places with a margin added to their stresses, so that the search aims slightly
+        below the allowed stress.
         """
         aim = CONTACT_STRESS_MARGIN if self.stress.in_contact else STRESS_MARGIN
         return tuple(replace(p, value=p.value + aim) for p in solved.every)
 
     def least_weight(self, start: Floats) -> Optimum:
-        """Find the least weight from logarithms of dimensions."""
+        """Find the least weight; start: logarithms of the dimensions."""
         return least_weight(
             self,
             start,
@@ -119,16 +120,16 @@ class WeightSearch:
         )
 
     def volume(self, solved: SolvedPin) -> float:
-        """Return the volume, m^3."""
+        """Return the volume of a solved pin, m^3."""
         return float(self.shape.volume(solved.values)[0])
 
     def written(self, values: Floats) -> Floats:
-        """Return dimensions as they are written."""
-        metre = self.problem.study.system.factor("length")
-        return rounded_values(self.shape, values, self.aim.step, metre)
+        """Return dimensions, m, rounded as they are written."""
+        length_unit = self.problem.study.system.factor("length")
+        return rounded_values(self.shape, values, self.aim.step, length_unit)
 
     def keeps(self, values: Floats) -> bool:
-        """Return whether geometric limits hold but for the digits that are written."""
+        """Whether the geometric limits hold within the rounding of written digits."""
         return float(self.shape.at_limits(values)[0].min(initial=0.0)) >= -LIMIT_ROUNDING_TOLERANCE
 
 
@@ -136,7 +137,7 @@ def optimum_of(search: WeightSearch, near: SolvedPin) -> Optimum:
     """Find the optimum from a design near the factor.
 
     For a pin in contact the stresses on rough cells are corrected at the optimum, and the search is
-    repeated from there, until the finer ones agree.
+    repeated from there until the stresses on the finer cells meet the factor closely.
     """
     if len(search.shape.dimensions) > 1 or not -ACTIVE_TOLERANCE <= near.worst <= 0.0:
         optimum = search.least_weight(np.log(near.values))
@@ -145,8 +146,8 @@ def optimum_of(search: WeightSearch, near: SolvedPin) -> Optimum:
         optimum = Optimum(x, search.weight(x)[0], places, optimality(search, x, places), 0)
     if search.stress.in_contact:
         for _ in range(MAX_CORRECTIONS):
-            sure = search.stress.sure(search.written(np.exp(optimum.x)))
-            if -CONTACT_STRESS_TOLERANCE <= sure.worst <= 0.0:
+            fine = search.stress.verified(search.written(np.exp(optimum.x)))
+            if -CONTACT_STRESS_TOLERANCE <= fine.worst <= 0.0:
                 break
             optimum = search.least_weight(optimum.x)
     return optimum
@@ -155,14 +156,15 @@ def optimum_of(search: WeightSearch, near: SolvedPin) -> Optimum:
 def scaled(search: WeightSearch, first: SolvedPin, roughly: bool) -> tuple[SolvedPin, Floats]:
     """Multiply all dimensions by one number until the factor is reached.
 
-    Returns the solved design nearest to the factor, and the dimensions that reach it, `roughly` by
-    the slope of stress there. The pin stays as it is where only bores change.
+    Return the solved design nearest to the factor, and the dimensions that reach it. If only bores
+    change, the pin is returned as given, because larger bores weaken it.
+    roughly: whether the last step may be extrapolated by the slope of the stress.
 
     Raises: ImpossibleError.
     """
     now, values = first, search.shape.values
     best: SolvedPin | None = None
-    small, why = None, ""  # small: with which stress is too large
+    small, why = None, ""  # small: the largest known scale (logarithm) with too much stress
     for _ in range(MAX_SCALINGS):
         here = float(np.log(now.values[0] / values[0]))
         if now.worst <= 0.0:
@@ -173,7 +175,7 @@ def scaled(search: WeightSearch, first: SolvedPin, roughly: bool) -> tuple[Solve
             break
         top = max((p for p in now.places if p.slope is not None), key=lambda p: p.value)
         assert top.slope is not None  # it was found with derivatives
-        if top.slope.sum() > 0.0:  # of bores alone, which weaken it
+        if top.slope.sum() > 0.0:  # only bores change, and larger ones weaken the pin
             return first, first.values
         leap, rate = np.log(MAX_SCALE_STEP), min(float(top.slope.sum()), -0.5)
         target = here + float(np.clip((now.worst + STRESS_MARGIN) / -rate, -leap, leap))
@@ -204,9 +206,9 @@ def scaled(search: WeightSearch, first: SolvedPin, roughly: bool) -> tuple[Solve
 
 
 def written(search: WeightSearch, optimum: Optimum) -> SolvedPin:
-    """Return the lightest design that was found and reaches the factor, as it is written.
+    """Return the lightest design found that reaches the factor with written dimensions.
 
-    Raises: ImpossibleError.
+    Raises: ImpossibleError if there is none.
     """
     stress, step = search.stress, search.aim.step
     candidates = [x for x in [repaired(search, np.exp(optimum.x))] if x is not None]
@@ -221,16 +223,16 @@ def written(search: WeightSearch, optimum: Optimum) -> SolvedPin:
 
 
 def repaired(search: WeightSearch, values: Floats) -> SolvedPin | None:
-    """Return a design whose written dimensions reach the factor, larger where need be; None where
-    there is none.
+    """Return a design whose written dimensions reach the factor; the values are enlarged if
+    necessary. None if no design is found.
     """
-    step, more = search.aim.step, 0.0
+    step, growth = search.aim.step, 0.0
     for k in range(MAX_REPAIRS if step is None else MAX_ROUNDING_STEPS):
-        solution = search.stress.sure(search.written(values * (1.0 + more)))
+        solution = search.stress.verified(search.written(values * (1.0 + growth)))
         if solution.worst <= 0.0:
             return solution
-        if step is None:  # by what stress exceeds, were it tension, which is enough
-            more += 0.6 * solution.worst + 5e-4 * (k + 1)
+        if step is None:  # enlarge by more than the excess needs if the stress were tension
+            growth += 0.6 * solution.worst + 5e-4 * (k + 1)
         else:
-            more += 0.5 * step / float(values.min())
+            growth += 0.5 * step / float(values.min())
     return None

@@ -1,6 +1,4 @@
-"""Rounding of the dimensions that a search for the least weight found, and their active
-constraints.
-"""
+"""Rounding of the dimensions of the least weight, and a description of its active constraints."""
 
 from __future__ import annotations
 
@@ -12,25 +10,30 @@ from pinstress.explore.size.other_dimensions import ROUNDING_DIRECTIONS, roundin
 from pinstress.explore.size.pin_shape import MAX_DIMENSION_RATIO, VariedShape, kind_of
 from pinstress.explore.size.scaled_study import rounded
 
-PRESENT_TOLERANCE = 1e-6  # relative, within which a search ends at a limit
-MAX_ROUNDING_STEPS = 40  # of diameters rounded to steps
-LIMIT_ROUNDING_TOLERANCE = 2e-3  # of a geometric limit, by which four digits may break it
+PRESENT_TOLERANCE = 1e-6  # relative distance within which a search ends at the present value
+MAX_ROUNDING_STEPS = 40  # largest number of steps by which rounded diameters are enlarged
+LIMIT_ROUNDING_TOLERANCE = (
+    2e-3  # violation of a geometric limit that rounding to four digits causes
+)
 
 
-def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre: float) -> Floats:
-    """Round dimensions as they are written: to four digits, diameters up, bores and fillets down,
-    but not beyond what they are: a fillet that may not become smaller would, by its last digits.
+def rounded_values(
+    shape: VariedShape, values: Floats, step: float | None, length_unit: float
+) -> Floats:
+    """Return dimensions rounded as they are written: to four digits, diameters up, bores and
+    fillets down. Rounding does not go beyond a present value that the search ended at; otherwise a
+    fillet that must not become smaller would do so by its last digits.
 
-    step: step to which diameters are rounded up, m, and by further steps where a geometric limit is
-    violated by that.
-    metre: a metre in the study's unit.
+    step: step to which diameters are rounded up, m; by further steps if that violates a geometric
+    limit.
+    length_unit: the study's unit of length, m.
     """
     out, steps = [], np.zeros(len(values))
     for k, (dimension, value) in enumerate(zip(shape.dimensions, values, strict=True)):
-        increment = rounding_step(dimension.key, step, metre)
-        steps[k] = (increment or 0.0) * metre
+        increment = rounding_step(dimension.key, step, length_unit)
+        steps[k] = (increment or 0.0) * length_unit
         up = ROUNDING_DIRECTIONS[kind_of(dimension.key)]
-        new = rounded(float(value) / metre, increment, up) * metre
+        new = rounded(float(value) / length_unit, increment, up) * length_unit
         least = float(value) * (1.0 - up * PRESENT_TOLERANCE)
         beyond = increment is None and up * least <= up * dimension.value < up * new
         out.append(dimension.value if beyond else new)
@@ -47,7 +50,7 @@ def rounded_values(shape: VariedShape, values: Floats, step: float | None, metre
 
 
 def binding(shape: VariedShape, optimum: Optimum) -> list[tuple[str, float]]:
-    """Return the active constraints in words, the largest multiplier first."""
+    """Return the active constraints in words with their multipliers, the largest first."""
     keys, limits = shape.keys, shape.geometric
     out = []
     for name, multiplier in optimum.optimality.multipliers.items():

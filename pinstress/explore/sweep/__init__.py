@@ -1,1 +1,1 @@
-"""Studies of many designs: a study with other numbers, sampled, solved and written as one table."""
+"""Sweeps of many designs of a study, which are sampled, solved and written as one table."""

@@ -1,7 +1,8 @@
-"""Batches of designs, each a second of work or more, for processes here or on other computers.
+"""Batches of designs, each with a second of work or more, for processes on this machine or others.
 
-A batch is solved as a whole; its designs, place and time change none of their numbers. Designs that
-share a shape are in the same batch as far as possible, so that their pins are meshed once.
+A batch is solved as a whole. The results of a design do not depend on its batch, or on where and
+when the batch is solved. Designs with the same shape are in the same batch as far as possible, so
+that their pins are meshed once.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number
 from pinstress.study.reading.file import Study, parse_study
 
-TARGET_BATCH_SECONDS = 2.0  # s of work in a batch
-# s in which a batch is handed out to one of many processes and its rows are read
+TARGET_BATCH_SECONDS = 2.0  # work in a batch
+# Time to hand out a batch to one of many processes and to read its rows
 BATCH_OVERHEAD_SECONDS = 0.008
 MAX_BATCH_DESIGNS = 5000
 
@@ -35,12 +36,12 @@ Rows = list[list[DesignRow]]
 
 @dataclass(frozen=True)
 class DesignProblem:
-    """A description, as text, of all that a process needs to solve designs of a study.
+    """All data that a process needs to solve designs of a study, as text.
 
-    It is small, and the same for all versions of the libraries between.
+    The text is small, and does not depend on the versions of the libraries that transmit it.
 
-    files: hash of the contents that were sent of the files that the study names; empty where they
-    are read as they lie here.
+    files: hash of the sent contents of the files that the study names; empty if the files are read
+    from this machine.
     """
 
     path: Path
@@ -59,7 +60,7 @@ class DesignProblem:
         pins: Sequence[str] | None = None,
         cases: Sequence[str] | None = None,
     ) -> DesignProblem:
-        """Return the problem of a study, whose files are named by absolute paths."""
+        """Return the problem of a study, with an absolute path of the study."""
         some, those = (None if x is None else tuple(x) for x in (pins, cases))
         path = study.path.absolute()
         return cls(path, study.text, study.located, tuple(numbers), some, those)
@@ -67,13 +68,13 @@ class DesignProblem:
 
 @dataclass(frozen=True)
 class Batch:
-    """A batch of designs: their numbers from 0, and values (B, p) in SI."""
+    """A batch of B designs: their numbers, counted from 0, and values (B, p) in SI."""
 
     designs: tuple[int, ...]
     values: tuple[tuple[float, ...], ...]
 
     def halves(self) -> tuple[Batch, Batch]:
-        """Split a batch of more than one design into halves."""
+        """Return both halves of a batch of more than one design."""
         k = len(self.designs) // 2
         return (
             Batch(self.designs[:k], self.values[:k]),
@@ -83,7 +84,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class SolvedBatch:
-    """The rows of a batch's designs, and the seconds that they took."""
+    """The rows of a batch's designs, and the time that they took, s."""
 
     batch: Batch
     rows: Rows
@@ -92,7 +93,7 @@ class SolvedBatch:
 
 @contextmanager
 def one_solver() -> Iterator[None]:
-    """Solve in one thread of this process at a time, with one in each numeric library."""
+    """Let only one thread of this process solve at a time, with one thread per numeric library."""
     from threadpoolctl import threadpool_limits
 
     with _SOLVER_LOCK, threadpool_limits(1):
@@ -119,14 +120,14 @@ def evaluator_of(problem: DesignProblem) -> Evaluator:
 
 
 def ordered(numbers: Sequence[Number], values: Floats) -> list[int]:
-    """Order the designs (N, p) so that those with the same shapes follow each other."""
+    """Return the numbers of designs (N, p) in an order in which equal shapes follow each other."""
     shape = [values[:, k] for k, number in enumerate(numbers) if shapes(number)]
     keys = [np.arange(len(values)), *reversed(shape)]
     return [int(i) for i in np.lexsort(keys)]
 
 
 def shapes(number: Number) -> bool:
-    """Return whether pins are meshed or solved anew for another value of a number; strengths need
+    """Whether another value of a number needs new meshes or solutions of pins; strengths need
     neither.
     """
     table, last = number.path[0], number.path[-1]
@@ -134,17 +135,18 @@ def shapes(number: Number) -> bool:
 
 
 def aim_of(at_once: int) -> float:
-    """Return the target duration of a batch, s, where so many are solved at a time.
+    """Return the target duration of a batch, s, if `at_once` batches are solved at a time.
 
-    Batches are handed out one after the other, to each process before it has solved its last one.
+    Batches are handed out one after the other, and each process must get its next batch before it
+    has solved the last one.
     """
     return max(TARGET_BATCH_SECONDS, BATCH_OVERHEAD_SECONDS * at_once)
 
 
 class Batches:
-    """Batches of the designs that are left, sized by the duration of earlier ones.
+    """The batches of the remaining designs; their size follows from the duration of earlier ones.
 
-    at_once: number of batches solved at a time.
+    at_once: number of batches that are solved at a time.
     """
 
     def __init__(self, numbers: Sequence[Number], values: Floats, done: set[int], at_once: int):
@@ -160,7 +162,7 @@ class Batches:
 
     @property
     def left(self) -> int:
-        """Return the number of designs that are in no batch yet."""
+        """The number of designs that are in no batch yet."""
         return len(self._left)
 
     def learn(self, done: SolvedBatch) -> None:
@@ -170,14 +172,14 @@ class Batches:
 
     @property
     def each(self) -> float | None:
-        """Return the seconds per design; None while unknown."""
+        """The time per design, s; None while unknown."""
         return self._seconds / self._count if self._count else None
 
     def next(self) -> Batch:
         """Return the next batch.
 
-        Batches are single designs until their duration is known, and at the end so small that all
-        processes end at about the same time.
+        Batches are single designs until the duration of a design is known. The last batches are so
+        small that all processes end at about the same time.
         """
         size = 1
         if self.each is not None:

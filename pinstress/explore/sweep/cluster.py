@@ -1,4 +1,4 @@
-"""A Dask scheduler and its workers: whether they answer, are able to work, and have our
+"""A Dask scheduler and its workers, with checks that they answer, can work, and have our
 versions.
 """
 
@@ -19,13 +19,13 @@ from pinstress.explore.sweep import versions as asking
 from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.study.reading.errors import InputError
 
-SCHEDULER_TIMEOUT = 10.0  # s within which a scheduler must answer
-# s within which it must have a worker that works, also where it starts one when there is work
+SCHEDULER_TIMEOUT = 10.0  # time within which a scheduler must answer, s
+# Time within which it must have a worker that works, also if it starts workers on demand, s
 WORKER_TIMEOUT = 30.0
-CHECK_INTERVAL = 3.0  # s between two looks at it
-WORKER_POLL_INTERVAL = 0.2  # s between two looks before there is a worker
-IGNORED_WARNINGS = "Mismatched versions|Sending large graph"  # what dask warns of
-MAX_LISTED_WORKERS = 20  # workers in a message
+CHECK_INTERVAL = 3.0  # time between two checks of the scheduler, s
+WORKER_POLL_INTERVAL = 0.2  # time between two checks until there is a worker, s
+IGNORED_WARNINGS = "Mismatched versions|Sending large graph"  # warnings of Dask
+MAX_LISTED_WORKERS = 20  # largest number of workers listed in a message
 
 VERSIONS_EXPRESSION = "[found := {}, exec(text, found), found['versions'](packages)][-1]"
 
@@ -33,7 +33,7 @@ VERSIONS_EXPRESSION = "[found := {}, exec(text, found), found['versions'](packag
 class Cluster:
     """A connected scheduler.
 
-    packages: packages of which workers must have our versions, as of pinstress and Python.
+    packages: packages of which workers must have our versions, in addition to pinstress and Python.
     tell: called with warnings.
     """
 
@@ -55,9 +55,9 @@ class Cluster:
         self.wait_for_worker()
 
     def wait_for_worker(self) -> None:
-        """Wait until a worker is able to work.
+        """Wait until a worker can work.
 
-        A task waits, too: without one an adaptive cluster starts no worker.
+        A task is submitted meanwhile, since without a task an adaptive cluster starts no worker.
 
         Raises: InputError, as `look`.
         """
@@ -69,18 +69,18 @@ class Cluster:
             time.sleep(WORKER_POLL_INTERVAL)
 
     def look(self, now: bool = False) -> int:
-        """Check the scheduler and its workers, at most every CHECK_INTERVAL s; return the number of
-        workers that can work, or could last.
+        """Check the scheduler and its workers, at most every CHECK_INTERVAL s unless `now`. Return
+        the number of workers that can work; if there are none, the last such number.
 
-        Raises: InputError where it does not answer, no worker has worked for WORKER_TIMEOUT s, or
-        one has other versions.
+        Raises: InputError if the scheduler does not answer, if no worker has worked for
+        WORKER_TIMEOUT s, or if one has other versions.
         """
         if not now and time.monotonic() - self._looked < CHECK_INTERVAL:
             return self.workers
         workers = self._identities()
         self._looked = time.monotonic()
         self._ask([address for address in workers if address not in self._same])
-        self._same &= set(workers)  # another one may come at the same address
+        self._same &= set(workers)  # another worker may start at the same address
         self._tell_of_paused({a for a, worker in workers.items() if worker["status"] == "paused"})
         if any(_works(workers[address]) for address in self._same):
             self._able = time.monotonic()
@@ -91,7 +91,7 @@ class Cluster:
         return self.workers
 
     def rows(self, future: Future[Any]) -> Any:
-        """Return the result of a batch that is done; None where it was lost with its worker."""
+        """Return the result of a finished batch; None if it was lost with its worker."""
         try:
             return future.result(timeout=SCHEDULER_TIMEOUT)
         except TimeoutError:
@@ -103,7 +103,7 @@ class Cluster:
         return None
 
     def lost(self) -> InputError:
-        """Return the error that the scheduler has ended, or cannot be reached."""
+        """Return the error that the scheduler has ended or cannot be reached."""
         return InputError(
             f"--scheduler: the connection to the scheduler at {self.connection.address} is lost",
             code="no-scheduler",
@@ -112,9 +112,9 @@ class Cluster:
     def require_same(self, answers: Mapping[str, Mapping[str, str] | BaseException]) -> None:
         """Check the versions of workers.
 
-        answers: versions by worker, or the error of asking it.
+        answers: for each worker its versions, or the error of the request for them.
 
-        Raises: InputError where workers have other versions.
+        Raises: InputError if workers have other versions.
         """
         lines = [f"{who}: {other}" for who, has in answers.items() if (other := self._other(has))]
         if lines:
@@ -149,7 +149,10 @@ class Cluster:
         return dict(said["workers"])
 
     def _ask(self, new: Sequence[str]) -> None:
-        """Ask workers for their versions; those that do not answer are asked again."""
+        """Ask workers for their versions; those that do not answer are asked again later.
+
+        Raises: InputError if workers have other versions.
+        """
         variables = {"text": inspect.getsource(asking), "packages": self._packages}
 
         async def one(address: str) -> Any:
@@ -212,12 +215,12 @@ def _works(worker: Mapping[str, Any]) -> bool:
 def connected(
     connection: ClusterConnection, packages: Sequence[str], tell: Callable[[str], None]
 ) -> Iterator[Cluster]:
-    """Connect to the user's cluster, and check its workers.
+    """Connect to an existing Dask cluster, and check its workers.
 
-    packages, tell: as of Cluster.
+    packages, tell: as in Cluster.
 
-    Raises: InputError where nothing answers, keys are refused, there is no worker, or one has other
-    versions.
+    Raises: InputError if nothing answers, if keys are refused, if there is no worker, or if one has
+    other versions.
     """
     connection.require_answer(SCHEDULER_TIMEOUT)
     with _silent():
@@ -228,7 +231,7 @@ def connected(
                 set_as_default=False,
                 security=connection.security,
             )
-        except Exception as error:  # whatever dask raises for what answers there
+        except Exception as error:  # Dask raises various errors if no scheduler answers there
             raise connection.no_scheduler(short(error)) from None
         try:
             yield Cluster(client, connection, packages, tell)
@@ -238,7 +241,7 @@ def connected(
 
 
 class _Closed(Client):
-    """A client that is closed here, and not by Python where it has never been connected."""
+    """A client that only this module closes; Python does not, even if it has never connected."""
 
     def __del__(self) -> None:
         pass
@@ -271,10 +274,10 @@ def short(error: BaseException) -> str:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Silence Dask's messages inside the block.
+    """Silence Dask's messages inside a context.
 
-    It logs connections that end, and warns of versions, which are compared here, and of the size of
-    files that are sent.
+    Dask logs connections that end, warns of versions, which are compared here, and warns of the
+    size of sent files.
     """
     parts = "worker", "nanny", "scheduler", "core", "comm", "client"
     names = ("distributed", *(f"distributed.{part}" for part in parts), "tornado", "asyncio")

@@ -1,7 +1,7 @@
-"""How to reach the user's own cluster: the address of its scheduler, and the keys.
+"""The connection to an existing cluster: the address of its scheduler, and the keys.
 
-Whoever can talk to a scheduler can run code on it and on its workers. So beyond this machine a
-connection must be encrypted by keys that both sides have.
+Whoever can talk to a scheduler can run code on it and on its workers. A connection beyond this
+machine must therefore be encrypted with keys that both sides have.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from pinstress.explore.sweep.keys import COMMAND, KeyFiles
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import require_package
 
-RETRY_INTERVAL = 0.2  # s between two attempts to connect
-# Without Dask's page; what is left of it is not encrypted, and offered to the same machine only
+RETRY_INTERVAL = 0.2  # time between two attempts to connect, s
+# Options without Dask's dashboard; the rest of its server is unencrypted, and only local
 NO_PAGES = "--no-dashboard --dashboard-address 127.0.0.1:0"
 SAME_KEYS = f"give scheduler, workers and --tls the same three files that {COMMAND} wrote"
 ENCRYPTED_EXAMPLE = "tls://HOST:8786"
@@ -43,20 +43,20 @@ class ClusterConnection:
 
     @property
     def scheduler_command(self) -> str:
-        """Return the command that starts such a scheduler."""
+        """The command that starts such a scheduler."""
         if self.keys is None:
             return f"dask scheduler --host 127.0.0.1 {NO_PAGES}"
         return f"dask scheduler --protocol tls {self.keys.dask_options} {NO_PAGES}"
 
     @property
     def worker_command(self) -> str:
-        """Return the command that starts a worker of it."""
+        """The command that starts a worker of this scheduler."""
         options = "" if self.keys is None else f" {self.keys.dask_options}"
         return f"dask worker {self.address}{options} --nthreads 1 {NO_PAGES}"
 
     @property
     def security(self) -> Any:
-        """Return the keys as Dask takes them; None without any."""
+        """The keys in the form that Dask takes; None without keys."""
         from distributed import Security
 
         if self.keys is None:
@@ -69,11 +69,11 @@ class ClusterConnection:
         )
 
     def require_answer(self, timeout: float) -> None:
-        """Try the keys once, because Dask only says that it could not connect.
+        """Try the keys once, because Dask itself reports only that it could not connect.
 
-        timeout: s, within which a scheduler must answer.
+        timeout: time within which a scheduler must answer, s.
 
-        Raises: InputError where nothing answers, or the two sides' keys do not belong together.
+        Raises: InputError if nothing answers, or if the keys of the two sides do not match.
         """
         if self.keys is None:
             return
@@ -81,7 +81,7 @@ class ClusterConnection:
         with self._explained(), self._socket(time.monotonic() + timeout) as plain:
             plain.settimeout(timeout)
             with context.wrap_socket(plain) as encrypted:
-                if not encrypted.recv(1):  # a scheduler that refuses our certificate does so now
+                if not encrypted.recv(1):  # a scheduler refuses a certificate at the first read
                     raise self._refused("it closed the connection")
 
     def no_scheduler(self, reason: str) -> InputError:
@@ -109,7 +109,7 @@ class ClusterConnection:
         )
 
     def _socket(self, deadline: float) -> socket.socket:
-        """Connect, also to a scheduler that is just starting. deadline: by time.monotonic()."""
+        """Connect, also to a scheduler that is still starting. deadline: by time.monotonic()."""
         while True:
             try:
                 left = max(deadline - time.monotonic(), RETRY_INTERVAL)
@@ -121,7 +121,7 @@ class ClusterConnection:
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """Explain errors of the first connection."""
+        """Turn errors of the first connection into InputErrors that explain them."""
         assert self.keys is not None
         try:
             yield
@@ -135,7 +135,7 @@ class ClusterConnection:
             raise InputError(f"--tls: {why}", code="other-authority") from None
         except ssl.SSLError as error:
             reason = (error.reason or "").replace("_", " ").lower()
-            if "alert" not in reason:  # what came is no TLS
+            if "alert" not in reason:  # the answer is not TLS
                 raise InputError(
                     f"--scheduler: what answers at {self.address} does not encrypt ({reason}); "
                     f"start it with: {self.scheduler_command}",
@@ -154,10 +154,10 @@ def connection_to(
 ) -> ClusterConnection | None:
     """Return the connection that the options of a command describe; None without a scheduler.
 
-    scheduler: its address.
-    tls: the folder of its keys.
-    insecure: whether a connection beyond this machine may be without them.
-    jobs: number of processes of this machine, for which there is no use beside a cluster.
+    scheduler: address of the scheduler.
+    tls: the folder with the keys.
+    insecure: whether a connection beyond this machine may be unencrypted.
+    jobs: number of processes of this machine, which cannot be combined with a cluster.
 
     Raises: InputError for options that contradict each other, keys that cannot be used, or a
     connection that is not encrypted.
@@ -217,7 +217,10 @@ def _keys(address: str, tls: Path | str | None, insecure: bool) -> KeyFiles:
 
 
 def _parts(address: str) -> tuple[str, str, int]:
-    """Return scheme, host and port of a scheduler's address; without a scheme it is tcp."""
+    """Return scheme, host and port of a scheduler's address; the default scheme is tcp.
+
+    Raises: InputError for text that is not an address.
+    """
     try:
         parts = urlsplit(address if "://" in address else f"tcp://{address}")
         host, port, rest = parts.hostname, parts.port, parts._replace(scheme="", netloc="").geturl()
@@ -233,7 +236,7 @@ def _parts(address: str) -> tuple[str, str, int]:
 
 
 def _is_loopback(host: str) -> bool:
-    """Return whether a host is this machine, on the address that no network reaches."""
+    """Whether a host is the loopback address of this machine, which no network can reach."""
     try:
         return ipaddress.ip_address(host).is_loopback
     except ValueError:

@@ -1,4 +1,4 @@
-"""Correlations of parameters with normal laws, checked."""
+"""The checked correlations of parameters with normal laws."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.shown import as_text, near
 
-EIGENVALUE_ROUND_OFF = 1e-12  # an eigenvalue of round-off
+EIGENVALUE_ROUND_OFF = 1e-12  # size of an eigenvalue that is only round-off
 
 
 def correlations_of(

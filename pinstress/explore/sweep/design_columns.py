@@ -1,4 +1,4 @@
-"""The columns of a sweep's table: parameters per design, results per row, texts as codes."""
+"""The columns of a sweep's table: parameters per design, results per row, texts as indices."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ COLUMN_TITLES = {c.key: c.heading for c in in_order(RESULT_COLUMNS, "mass") if c
 
 @dataclass(frozen=True)
 class DesignColumn:
-    """A column of values (designs or rows,): NaN for none; texts are given by their index in
+    """A column of values, one for each design or row; NaN for none. A text is given as its index in
     `names`.
     """
 
@@ -35,7 +35,7 @@ class DesignColumn:
 
     @property
     def known(self) -> Floats:
-        """Return the finite values."""
+        """The finite values."""
         return self.values[np.isfinite(self.values)]
 
 
@@ -43,11 +43,11 @@ class DesignColumn:
 class Designs:
     """The designs of a sweep, with rows sorted by design.
 
-    numbers: of the designs (D,), ascending.
-    first: (D + 1,), start of the rows of each design.
-    required: the safety factor, None for none.
+    numbers: (D,) numbers of the designs, ascending.
+    first: (D + 1,) number of the first row of each design, and the number of rows.
+    required: the required safety factor; None if there is none.
     in_lugs: the pins whose lugs are not judged.
-    other_checks: those that a run judges besides yield, and that are not judged here.
+    other_checks: the checks that a run makes in addition to yield, which are not made here.
     """
 
     study: str
@@ -62,7 +62,7 @@ class Designs:
 
     @property
     def failed_rows(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Return a mask of the rows that have no maximum but a reason for it."""
+        """The mask of the rows that have no maximum but a reason why."""
         lacking = np.isfinite(self.texts["reason"].values)
         for column in self.results:
             if column.key == "max_von_mises":
@@ -71,7 +71,7 @@ class Designs:
 
     @property
     def failed(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """Return a mask (D,) of the designs that have such a row."""
+        """The mask (D,) of the designs that have such a row."""
         rows = self.failed_rows
         return np.logical_or.reduceat(rows, self.first[:-1]) if len(rows) else rows
 
@@ -142,7 +142,7 @@ def _numeric(kind: Any) -> bool:
 
 
 def _texts(data: Any) -> Any:
-    """Return values as texts, the empty ones as none."""
+    """Return values as texts; empty texts become null."""
     import pyarrow as pa
     from pyarrow import compute
 

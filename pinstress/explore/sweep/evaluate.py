@@ -1,9 +1,9 @@
-"""The results of a study with other numbers: a row for each of its pins in each of its cases.
+"""The results of a study with changed numbers: a row for each of its pins in each of its cases.
 
-A design is solved as a run solves a study, so `pinstress run` of the changed study finds the same
-rows. Parts that do not change from one design to the next are not solved again: loads that depend
-on no changed number, pins whose shape, material and loads are those of an earlier design, and the
-unit loads of a pin that only loads or strength change.
+A design is solved as in a run, so `pinstress run` of the changed study finds the same rows. Parts
+that do not change from one design to the next are not solved again: loads that do not depend on a
+changed number, pins whose shape, material and loads are those of an earlier design, and the unit
+loads of a pin of which only loads or strength change.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study, raw_study, with_raw, with_value
 from reports.data.row import PinResult
 
-MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields in each of perhaps many processes
-MAX_SUPERPOSED = 256  # designs at once: with 5,000 points 10 MB for each array of bounds
+MAX_MESHES_SIZE = 2 * 10**8  # bytes of meshes and fields kept by each of possibly many processes
+MAX_SUPERPOSED = 256  # designs superposed at once: with 5,000 points, 10 MB per array of bounds
 STRENGTH_KEYS = ("yield_strength", "ultimate_strength", "shear_strength", "bearing_strength")
-MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # that are remembered, loads of each case
-# Of which loads do not depend
+MAX_REMEMBERED_LOADS, MAX_REMEMBERED_ROWS = 64, 4096  # loads are counted for each case
+# Tables on which loads usually do not depend
 TABLES_WITHOUT_LOADS = ("pin", "lug_defaults", "material", "analysis")
 IGNORED_TABLES = ("vary", "published", "beam_check", "motion_check", "report")
 
@@ -49,16 +49,16 @@ V = TypeVar("V")
 
 @dataclass(frozen=True)
 class DesignRow:
-    """One pin in one case of a design, in SI.
+    """One pin in one load case of a design, in SI.
 
-    max_von_mises, error_estimate: Pa, None where there is no maximum (verdict `failed` or `rigid`).
+    max_von_mises, error_estimate: Pa; None if there is no maximum (verdict `failed` or `rigid`).
     governing_time: s, None without a motion.
     mass: kg, None without a density.
-    reason, code: why the verdict is not `converged`, for people and for programs.
+    reason, code: why the verdict is not `converged`, as human-readable text and as a code.
     outcome, depends_on: as in a run (pinstress.explore.sweep.outcomes).
-    governs: "surface" or "section", empty where the model has no places.
-    surface, section, beneath, beneath_error: largest stresses and the last one's error, Pa; None
-    where there is none.
+    governs: "surface" or "section"; empty if the model has no places.
+    surface, section, beneath, beneath_error: the largest stress of surface, of sections and beneath
+    contact, and the error of the last, Pa; None where there is none.
     loose: whether the pin comes loose from a lug at the temperature of the case.
     """
 
@@ -85,10 +85,7 @@ class DesignRow:
 def rows_without_maximum(
     table: Iterable[tuple[str, str]], reason: str, code: str
 ) -> list[DesignRow]:
-    """Return the rows of a design that nothing is known of.
-
-    table: their pins and cases.
-    """
+    """Return the rows of a design without any results. table: pin and case of each row."""
     return [
         DesignRow(pin, case, None, None, None, "failed", reason=reason, code=code)
         for pin, case in table
@@ -97,8 +94,8 @@ def rows_without_maximum(
 
 @dataclass(frozen=True)
 class PosedDesign:
-    """A design before it is solved: its tasks, and the rows, by pin and case, of what cannot be
-    built.
+    """A design before it is solved: its tasks, and failed rows, by pin and case, for those that
+    cannot be built.
     """
 
     study: Study
@@ -127,16 +124,16 @@ class Recent(Generic[K, V]):
 
 
 class Evaluator:
-    """A study whose numbers change.
+    """The evaluator of a study whose numbers change.
 
     pins, cases: names; all by default.
-    parameters: in the order of the values of `rows`.
-    table: the (pin, case) of a design's rows, in their order.
-    memo: of meshes, unit fields and flexibilities of its pins.
-    files: those that the study names, as far as the creator noted them
+    parameters: the numbers that change, in the order of the values passed to `rows`.
+    table: pin and case of each row of a design, in the order of the rows.
+    memo: meshes, unit fields and flexibilities of the pins.
+    files: the files that the study names, if the creator of the evaluator has noted them
     (pinstress.explore.sweep.batches).
 
-    Raises: InputError where the study as it is cannot be run.
+    Raises: InputError if the study as given cannot be run.
     """
 
     def __init__(
@@ -151,7 +148,7 @@ class Evaluator:
         self.study = with_raw(study, self._raw)
         plan = prepare(self.study, pins=pins, cases=cases)
         self.files: tuple[Path, ...] = ()
-        # Free when it began: to ask again takes a millisecond.
+        # The memory that was free at the start; each query would take a millisecond.
         self._memory = plan.requirement.memory
         self._cases = tuple(plan.loads)
         rows = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
@@ -174,17 +171,17 @@ class Evaluator:
         }
 
     def rows(self, values: Sequence[float] | Floats) -> list[DesignRow]:
-        """Return the rows of a design, one for each of `table`.
+        """Return the rows of a design, one for each entry of `table`.
 
-        values: of the parameters (p,), SI.
+        values: (p,) of the parameters, SI.
         """
         return self.rows_of([values])[0]
 
     def rows_of(self, designs: Iterable[Sequence[float] | Floats]) -> list[list[DesignRow]]:
-        """Return the rows of designs, each as `rows` has them.
+        """Return the rows of each design, as `rows` does.
 
-        Pins that differ by their loads alone are superposed together.
-        designs: values of the parameters (p,) of each, SI.
+        Pins that differ only by their loads are superposed together.
+        designs: values (p,) of the parameters of each design, SI.
         """
         values = [[float(value) for value in design] for design in designs]
         out: list[list[DesignRow]] = []
@@ -202,18 +199,19 @@ class Evaluator:
         """
         raw = self._raw
         for number, value in zip(self.numbers, values, strict=True):
-            for path in number.paths:  # numpy's numbers are none of a study: compared with [], say
+            # float(), because numpy's numbers behave differently, as when compared with [].
+            for path in number.paths:
                 raw = with_value(raw, path, number.in_study(number.shown(float(value))))
         return with_raw(self.study, raw)
 
     def _moves(self, number: Number, case: str, along: bool) -> bool:
-        """Return whether the loads of a case depend on a number.
+        """Whether the loads of a case depend on a number.
 
-        They depend on numbers of the mechanism, of the case and of cases that it names, on those
+        Loads depend on numbers of the mechanism, of the case and of cases that it names, on numbers
         that give mass to floating pins, and on lengths, which place bands along pins.
 
-        along: whether these places count (`depends_on_bands`), which may differ from design to
-        design.
+        along: whether the places of bands count (`depends_on_bands`), which may differ between
+        designs.
         """
         table, *inner = number.path
         if table == "case":
@@ -236,9 +234,9 @@ class Evaluator:
         return inner[-1] == "density" and any(study.pin[x].material == inner[0] for x in free)
 
     def loads_of(self, study: Study, values: Sequence[float]) -> dict[str, CaseLoads | InputError]:
-        """Return the loads of a design by case, or why a case has none.
+        """Return the loads of a design by case, or the error of a case without loads.
 
-        study: with the values (p,) of the parameters, SI.
+        study: the study of the design. values: (p,) of its parameters, SI.
         """
         loads: dict[str, CaseLoads | InputError] = {}
         mechanism: AnyLinkage | None = None
@@ -259,9 +257,9 @@ class Evaluator:
         return loads
 
     def _posed(self, values: Sequence[float]) -> PosedDesign:
-        """Return a design that is built, with its loads, and nothing solved.
+        """Return a design with its loads, before anything is solved.
 
-        values: of the parameters (p,), SI.
+        values: (p,) of the parameters, SI.
         """
         try:
             study = self.changed(values)
@@ -295,8 +293,8 @@ class Evaluator:
         requirement = requirement_of(study, memory=self._memory)
         posed = []
         for task in tasks(study, [pin], loads):
-            # Strengths decide where stress is read that is only to be decided on, and where stress
-            # governs on a pin with a hardened surface.
+            # With the goal to decide, strengths affect where stress is read; on a pin with a
+            # hardened surface, they affect where stress governs.
             strong = requirement.goal == "decide" or bool(task.material.hardened)
             alike = None if task.lugs or strong else self._alike.get(key)
             one = posed_task(study, task, requirement, loads, alike)
@@ -306,14 +304,14 @@ class Evaluator:
         return posed
 
     def _answered(self, design: PosedDesign, known: Mapping[str, Rows]) -> list[DesignRow]:
-        """Return the rows of a design; known: those of some tasks, by their keys."""
+        """Return the rows of a design. known: rows of some tasks, by their keys."""
         rows = dict(design.failed)
         for posed in design.tasks:
             rows |= self._solved(posed, known.get(posed.key))
         return [rows[key] for key in self.table]
 
     def _solved(self, posed: PosedTask, known: Rows | None) -> dict[tuple[str, str], DesignRow]:
-        """Return the rows of a task, by pin and case; known: those that are not judged yet."""
+        """Return the rows of a task, by pin and case. known: its rows before they are judged."""
         study, task, pin = posed.study, posed.task, posed.task.pin.name
         try:
             rows = known or self._rows_of(posed)
@@ -353,7 +351,7 @@ def _design_row(row: PinResult, task: Task, study: Study) -> DesignRow:
 
 
 def only_loads(number: Number) -> bool:
-    """Return whether a number changes nothing of a pin but its given loads and what judges it."""
+    """Whether a number changes only the given loads of pins and the strengths that judge them."""
     return all(
         path[0] == "case" or (path[0] == "material" and path[-1] in STRENGTH_KEYS)
         for path in number.paths
@@ -361,7 +359,7 @@ def only_loads(number: Number) -> bool:
 
 
 def _names(content: object, case: str) -> bool:
-    """Return whether a table contains the name of a case as a text."""
+    """Whether a table contains the name of a case as a text."""
     if isinstance(content, Mapping):
         return any(_names(entry, case) for entry in content.values())
     if isinstance(content, list | tuple):
@@ -374,7 +372,9 @@ def _code(peak: Maximum) -> str:
 
 
 def _failed(study: Study, pin: str, case: str, error: BaseException) -> DesignRow:
-    """Return a row without a maximum; its reason names no file, whose place changes nothing."""
+    """Return a failed row; its reason omits the study's file, so that equal studies give equal
+    rows wherever they are.
+    """
     lines = error.lines if isinstance(error, InputError) else (str(error) or "out of memory",)
     place = re.compile(rf"{re.escape(str(study.path))}(:\d+)?: ")
     reason = "; ".join(place.sub("", line) for line in lines)

@@ -1,4 +1,4 @@
-"""Tolerances as drawings give them: two deviations from the nominal size, or a class of ISO 286."""
+"""Tolerances as on drawings: two deviations from the nominal size, or a class of ISO 286."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TOLERANCE_EXAMPLES = 'write for instance "+0.1 mm -0.05 mm", "±0.1 mm" or "h7"'
 
 
 def limits_of(text: str, number: Number, system: UnitSystem) -> tuple[float, float]:
-    """Return the least and the largest value (SI) of a number with a tolerance.
+    """Return the smallest and the largest value (SI) of a number with a tolerance.
 
     Raises: ArgumentError.
     """
@@ -56,8 +56,10 @@ def _deviations(text: str, number: Number, system: UnitSystem) -> tuple[float, f
 
 
 def _require_units(text: str, parts: list[str], number: Number, system: UnitSystem) -> None:
-    """Raise ArgumentError where one deviation alone has a unit, unless the other is the same in it:
-    on a drawing one unit is of both.
+    """Check that both deviations have a unit, or neither.
+
+    Raises: ArgumentError if only one deviation has a unit, unless the other would have the same
+    value in that unit; on a drawing one unit applies to both.
     """
     (value, unit), (other, other_unit) = (split(part) or (0.0, "") for part in parts)
     if bool(unit) == bool(other_unit):

@@ -1,8 +1,8 @@
-"""The keys of a cluster: with them scheduler, workers and pinstress talk encrypted, and to nobody
-who has none.
+"""The keys of a cluster, for encrypted connections of scheduler, workers and pinstress.
 
-All of a cluster have the same certificate, signed by an authority of its own, whose key is kept
-nowhere: no further certificate of that authority can ever be made.
+Only those who have the keys can communicate with the cluster. All parties of a cluster have the
+same certificate, signed by the cluster's own authority. The key of the authority is not stored
+anywhere, so that no further certificate can ever be issued.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric import ec
 
 VALID_DAYS = 5 * 365
-CLOCK_DIFFERENCE = 1  # days by which the clocks of two computers may differ
+CLOCK_DIFFERENCE = 1  # largest difference of the clocks of two computers, days
 COMMAND = "pinstress cluster-keys"
 CERTIFICATE_MARK, KEY_MARK = "-----BEGIN CERTIFICATE-----", "PRIVATE KEY-----"
 
@@ -38,30 +38,30 @@ class KeyFiles:
 
     @property
     def authority(self) -> Path:
-        """Return the file of the authority's certificate."""
+        """The file of the authority's certificate."""
         return self.folder / "ca.pem"
 
     @property
     def certificate(self) -> Path:
-        """Return the file of the certificate."""
+        """The file of the certificate."""
         return self.folder / "cert.pem"
 
     @property
     def key(self) -> Path:
-        """Return the file of the certificate's key."""
+        """The file of the certificate's key."""
         return self.folder / "key.pem"
 
     @property
     def dask_options(self) -> str:
-        """Return the options that dask's commands need for these files, as a shell takes them."""
+        """The options of Dask's commands for these files, quoted for a shell."""
         options = ("--tls-ca-file", self.authority, "--tls-cert", self.certificate)
         return shlex.join(map(str, (*options, "--tls-key", self.key)))
 
     def context(self) -> ssl.SSLContext:
-        """Return the settings of an encrypted connection to a scheduler, those of Dask: whoever has
-        a certificate of the authority is trusted, whatever his host's name.
+        """Return the settings of an encrypted connection to a scheduler. As in Dask, whoever has a
+        certificate of the authority is trusted, whatever the name of the host.
 
-        Raises: InputError where a file is missing or is not what its name says.
+        Raises: InputError if a file is missing or has the wrong content.
         """
         self._require(self.authority, CERTIFICATE_MARK, "a certificate")
         self._require(self.certificate, CERTIFICATE_MARK, "a certificate")
@@ -97,11 +97,11 @@ class KeyFiles:
 
 
 def write_keys(folder: Path) -> KeyFiles:
-    """Write the keys of a new cluster into a folder, which is made if there is none.
+    """Write the keys of a new cluster into a folder, which is created if necessary.
 
-    The key may be read by its owner only.
+    Only the owner can read the key.
 
-    Raises: InputError where any of the three files exists, or cannot be written.
+    Raises: InputError if any of the three files exists or cannot be written.
     """
     require_package("cryptography", "cluster-keys")
     files = KeyFiles(folder)
@@ -135,7 +135,9 @@ def write_keys(folder: Path) -> KeyFiles:
 
 
 def _new_keys() -> tuple[bytes, bytes, bytes]:
-    """Return an authority's certificate, a certificate of it and that one's key, in PEM."""
+    """Return an authority's certificate, a certificate signed by it, and the key of the latter, in
+    PEM.
+    """
     from cryptography import x509
     from cryptography.hazmat.primitives import serialization
     from cryptography.hazmat.primitives.asymmetric import ec
@@ -173,9 +175,9 @@ def _certificate(
 ) -> x509.Certificate:
     """Return a certificate.
 
-    name, key: of its owner.
-    issuer, issuer_key: of the authority that signs it.
-    extensions: besides those that name the two keys; use and constraints are critical.
+    name, key: of the owner.
+    issuer, issuer_key: of the authority that signs the certificate.
+    extensions: in addition to the two key identifiers; usage and constraints are critical.
     """
     from cryptography import x509
     from cryptography.hazmat.primitives import hashes
@@ -208,7 +210,7 @@ def _named(name: str) -> x509.Name:
 
 
 def _key_usage(signs: bool) -> x509.KeyUsage:
-    """Return what a key may do: sign certificates, or else prove who it is."""
+    """Return the permitted use of a key: to sign certificates if `signs`, else to authenticate."""
     from cryptography import x509
 
     return x509.KeyUsage(

@@ -1,8 +1,8 @@
 """Probability laws of numbers, given by their quantiles, in SI.
 
-A law that is cut off at limits has the probability between them, scaled to one.
+A law that is cut off at limits is truncated: the probability between the limits is scaled to one.
 
-scipy is imported where it is used, so that `pinstress check` need not wait for it.
+SciPy is imported only where it is used, so that `pinstress check` need not wait for it.
 """
 
 from __future__ import annotations
@@ -26,26 +26,24 @@ class Uniform:
     high: float
 
     def quantile(self, u: Floats) -> Floats:
-        """Return the values below which a number stays with probabilities u (N,)."""
+        """Return the quantiles at probabilities u (N,)."""
         return np.asarray(self.low + np.asarray(u) * (self.high - self.low), np.float64)
 
     def of_normal(self, z: Floats) -> Floats:
-        """Return the values that are as likely to be exceeded as z (N,) by a standard normal
-        variable.
-        """
+        """Return the quantiles at the probabilities of standard normal deviates z (N,)."""
         return self.quantile(_ndtr(z))
 
     def text(self, show: Show, spread: Show) -> str:
-        """Describe the law in words.
+        """Return a description of the law in words.
 
-        show: makes a text of a value; spread: of a difference between two.
+        show: makes a text of a value. spread: makes a text of a difference of two values.
         """
         return f"uniform from {show(self.low)} to {show(self.high)}"
 
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal law, cut off at `low` and `high`; `mean` and `deviation` are those without that."""
+    """A normal law, cut off at `low` and `high`; mean and deviation are those before the cut."""
 
     mean: float
     deviation: float
@@ -54,7 +52,7 @@ class Normal:
 
     @property
     def cut_off(self) -> bool:
-        """Return whether it has limits."""
+        """Whether the law has limits."""
         return math.isfinite(self.low) or math.isfinite(self.high)
 
     @property
@@ -72,7 +70,7 @@ class Normal:
         if not self.cut_off:
             return np.asarray(self.mean + self.deviation * ndtri(u), np.float64)
         low, high = (np.array([self.low, self.high]) - self.mean) / self.deviation
-        if low > 0.0:  # in the upper tail, where 1 - p has the digits
+        if low > 0.0:  # in the upper tail 1 - p is more accurate than p
             z = -ndtri(_ndtr(-low) + u * (_ndtr(-high) - _ndtr(-low)))
         else:
             z = ndtri(_ndtr(low) + u * (_ndtr(high) - _ndtr(low)))
@@ -92,8 +90,8 @@ class Normal:
 
 @dataclass(frozen=True)
 class LogNormal:
-    """A law whose logarithm is normal, cut off at `low` and `high`; `mean` and `deviation` are
-    those of the number itself, without limits.
+    """A lognormal law, cut off at `low` and `high`; `mean` and `deviation` are those of the number
+    itself, before the cut.
     """
 
     mean: float
@@ -103,7 +101,7 @@ class LogNormal:
 
     @property
     def logarithm(self) -> Normal:
-        """Return the law of its logarithm."""
+        """The law of the logarithm."""
         variance = math.log1p((self.deviation / self.mean) ** 2)
         centre = math.log(self.mean) - 0.5 * variance
         low, high = (math.log(x) if x > 0.0 else -math.inf for x in (self.low, self.high))
@@ -155,16 +153,16 @@ class Triangular:
 
 Law = Uniform | Normal | LogNormal | Triangular
 
-DEVIATIONS_TO_LIMIT = 3.0  # standard deviations from the middle of a tolerance to its limits
+DEVIATIONS_TO_LIMIT = 3.0  # half width of a tolerance, in standard deviations
 
 
 def of_tolerance(low: float, high: float) -> Normal:
-    """Return the law of a dimension that is made and inspected to lie between two limits."""
+    """Return the law of a dimension that is manufactured and inspected to lie within two limits."""
     return Normal(0.5 * (low + high), 0.5 * (high - low) / DEVIATIONS_TO_LIMIT, low, high)
 
 
 def cut_off(law: Normal | LogNormal, low: float, high: float) -> Normal | LogNormal:
-    """Return the same law between limits."""
+    """Return the law cut off at limits."""
     return replace(law, low=low, high=high)
 
 

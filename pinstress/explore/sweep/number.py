@@ -1,6 +1,6 @@
-"""Numbers of a study by their keys: place, dimension, and other values.
+"""Numbers of a study by their keys: path, dimension, and changed values.
 
-Any number of a study has a key, as messages spell it; the schema gives its dimension.
+Every number of a study has a key, as in messages; the schema gives its dimension.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from pinstress.study.schema.units import (
 )
 
 ANGLE_UNITS = {"angle": ("deg", math.pi / 180.0)}  # others are in radians
-# Of dimensions whose numbers need a unit: that which has the SI value
+# The SI unit of dimensions whose numbers must be written with a unit
 SI_UNITS = {
     "angular velocity": "rad/s",
     "angular acceleration": "rad/s^2",
     **THERMAL_UNITS,
 }
-TEMPERATURE_DECIMALS = 9  # 353.15 K - 273.15 K is not 80 K to the last digit
+TEMPERATURE_DECIMALS = 9  # because 353.15 K - 273.15 K is not exactly 80 K
 
 Path = tuple[str | int, ...]
 
@@ -47,12 +47,12 @@ class Number:
 
     key: its key.
     path: its path in the content that `raw_study` returns.
-    dimension: empty for a number without one.
-    nominal: its value in SI.
-    unit: unit of a design's values in tables, `factor` its SI value; `zero` is the SI value of its
-    zero, which only temperatures have.
-    written: whether the study must give it as a text with that unit.
-    others: paths of numbers that are always the same: those of a key that stands for several, as
+    dimension: empty for a number without a dimension.
+    nominal: its value in the study, SI.
+    unit: unit of a design's values in tables. factor: SI value of this unit. zero: SI value of the
+    unit's zero, which only temperatures need.
+    written: whether the study must give the number as a text with this unit.
+    others: further paths if the key stands for several equal numbers, such as
     "profile[1-3].diameter".
     """
 
@@ -68,7 +68,7 @@ class Number:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """Return all places of the number."""
+        """All paths of the number."""
         return self.path, *self.others
 
     def shown(self, value: float) -> float:
@@ -78,23 +78,23 @@ class Number:
         return round((value - self.zero) / self.factor, TEMPERATURE_DECIMALS) + 0.0
 
     def text(self, value: float) -> str:
-        """Return a value (SI) in the number's unit, as people read it."""
+        """Return a value (SI) in the number's unit, as human-readable text."""
         return f"{self.shown(value):.6g} {self.unit}".rstrip()
 
     def spread_text(self, difference: float) -> str:
-        """Return a difference of two values (SI) in the number's unit, as people read it."""
+        """Return a difference of two values (SI) in the number's unit, as human-readable text."""
         return f"{difference / self.factor:.6g} {self.unit}".rstrip()
 
     def in_study(self, value: float) -> float | str:
-        """Return a value in its unit (not SI) as the study may write it."""
+        """Return a value, given in the number's unit, in the form in which the study writes it."""
         return f"{value!r} {self.unit}" if self.written else value
 
 
 def number_at(study: Study, key: str) -> Number:
-    """Return the number with a key, or the one that several keys have in common.
+    """Return the number with a key, which may stand for several equal numbers.
 
-    Raises: ArgumentError for a key that names no number, or different ones; InputError for a text
-    that is not a key.
+    Raises: ArgumentError for a key that names no number, or different numbers; InputError for a
+    text that is not a key.
     """
     numbers = [_single(study, single) for single in single_keys(key)]
     for number in numbers[1:]:
@@ -124,9 +124,11 @@ def _single(study: Study, key: str) -> Number:
 
 
 def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
-    """Return another value of a number in SI: a number in the study's units, or a text with a unit.
+    """Return a value for a number in SI.
 
-    Raises: ArgumentError for one of another dimension.
+    value: a number in the study's units, or a text with a unit.
+
+    Raises: ArgumentError for a value of another dimension.
     """
     if number.dimension:
         return to_si(value, number.dimension, system)
@@ -139,8 +141,8 @@ def si_value(system: UnitSystem, number: Number, value: float | str) -> float:
 
 
 def _clearance(study: Study, raw: dict[str, Any], key: str) -> Number | None:
-    """Return the clearance of a lug that the study leaves to its fit or default; None of any other
-    key.
+    """Return the clearance of a lug that the study does not state but leaves to a fit or default;
+    None for any other key.
     """
     match key_parts(study, key):
         case ["pin", str() as pin, "lug", str() as lug, "clearance"] if pin in study.table.pin:
@@ -182,7 +184,9 @@ def _number(study: Study, raw: dict[str, Any], key: str, path: Path, value: Any)
 
 
 def unit_of(system: UnitSystem, dimension: str) -> str:
-    """Return the name of a system's unit of a dimension, in length, force, time and stress."""
+    """Return the name of a system's unit of a dimension, made of its units of length, force, time
+    and stress.
+    """
     if dimension == "stress":
         return system.stress
     if dimension in THERMAL_UNITS:
@@ -205,13 +209,13 @@ def _dimension(study: Study, raw: dict[str, Any], path: Path) -> str:
 
 
 def _whole(study: Study, raw: dict[str, Any], path: Path) -> bool:
-    """Return whether only a whole number may be in this place."""
+    """Whether the schema permits only a whole number at a path."""
     errors = _validate(study, with_value(raw, path, 0.5))
     return any(kind in ("int_type", "int_from_float") for kind in errors)
 
 
 def _validate(study: Study, raw: dict[str, Any]) -> list[str]:
-    """Return the kinds of errors."""
+    """Return the kinds of the schema's errors in a study's content."""
     from pydantic import ValidationError
 
     from pinstress.study.schema.tables import StudyTable
@@ -228,8 +232,8 @@ def _dimension_of_unit(unit: str) -> str:
 
 
 def _path(study: Study, raw: Any, key: str) -> Path:
-    """Return the path of a key in the raw content; one number for both ends may be meant with [1]
-    or [2].
+    """Return the path of a key in the raw content; a single number for both ends may be addressed
+    with [1] or [2].
     """
     path: list[str | int] = []
     here = raw

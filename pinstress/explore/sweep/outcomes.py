@@ -1,7 +1,7 @@
-"""Outcomes of the pins of a design against their factor, judged as a run judges them.
+"""Outcomes of the pins of a design against their required factor, judged as in a run.
 
-Only a run considers the range over the joint of a pin with prescribed loads, a beam in assumed lugs
-that takes longer than the pin itself. Such a pin is at most "safe as described".
+Only a run considers the range over the joint of a pin with prescribed loads: the solution of a beam
+in assumed lugs takes longer than the pin itself. Such a pin is at most "safe as described" here.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ from reports.format.words import depends_words
 
 
 def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> PinResult:
-    """Return the row for one solution of a task, without meshes, zones, edges or cells; it can be
-    remembered for any strength.
+    """Return the row of one solution of a task, without meshes, zones, edges or cells. It does not
+    depend on the strength, so it can be reused for any strength.
     """
     peak, joint = solution.peak, solution.joint
     joint = joint and replace(joint, along=None, bending_moments=())
@@ -41,9 +41,9 @@ def bare_row(task: Task, solution: Solution, loads: Mapping[str, CaseLoads]) -> 
 
 
 def judged_row(row: PinResult, task: Task, study: Study) -> PinResult:
-    """Return a row with its judgement and what that depends on.
+    """Return a row with its judgement and the ranges on which that depends.
 
-    study: of the design.
+    study: the study of the design.
     """
     required = required_factor(study, row.pin, row.case)
     row = replace(
@@ -56,7 +56,7 @@ def judged_row(row: PinResult, task: Task, study: Study) -> PinResult:
 
 
 def outcome_words(row: PinResult, task: Task, system: UnitSystem) -> tuple[str, str]:
-    """Return the outcome, and in words, in the units of a study, what it depends on."""
+    """Return the outcome, and in words and in the units of a study, what the outcome depends on."""
     if row.outcome == DEPENDS:
         units = Units(system.length, system.force, system.stress, system.time)
         return DEPENDS, depends_words([in_units(d, system.factor) for d in row.depends_on], units)
@@ -65,8 +65,8 @@ def outcome_words(row: PinResult, task: Task, system: UnitSystem) -> tuple[str, 
 
 
 def stress_at(peak: Maximum) -> tuple[float | None, float | None, float | None, float | None]:
-    """Return the largest stress of surface and section and beneath contact, this with its error,
-    Pa.
+    """Return the largest stress of the surface, of the sections and beneath contact, and the error
+    of the last, Pa; None where there is none.
     """
     places = peak.places
     section, contact = (places.section, places.contact) if places else (None, None)

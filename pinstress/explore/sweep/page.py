@@ -1,4 +1,4 @@
-"""designs.html: the designs of a sweep, for exploring, in one file that opens offline."""
+"""The page designs.html, to explore the designs of a sweep, in one file that opens offline."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def page_data(designs: Designs) -> dict[str, Any]:
 
 
 def _packed(column: DesignColumn) -> dict[str, Any]:
-    """Return a column's values as they are; texts by their index in `names` from 1, 0 for none."""
+    """Return a packed column; texts as their index in `names`, counted from 1, 0 for none."""
     head = {"key": column.key, "title": column.title, "unit": column.unit}
     if column.names is None:
         return {**head, "values": packed(column.values, "<f8")}
@@ -72,7 +72,7 @@ def _packed(column: DesignColumn) -> dict[str, Any]:
 
 
 def column_grid(designs: Designs) -> Grid:
-    """Return a table of what varies and what results, with the ranges."""
+    """Return a table of the parameters and results with their ranges."""
     columns = [(c, "parameter") for c in designs.parameters]
     columns += [(c, "result") for c in designs.results]
     body = [[c.title, kind, c.unit or DASH, *_ends(c), c.law or DASH] for c, kind in columns]
@@ -90,8 +90,8 @@ def _ends(column: DesignColumn) -> list[str]:
 
 
 def reason_grid(designs: Designs) -> Grid:
-    """Return a table of the reasons why designs have no results, the most frequent first: by code,
-    with an example.
+    """Return a table of the reasons why rows have no results, grouped by code, the most frequent
+    first, with an example of each.
     """
     reason, code = designs.texts["reason"], designs.texts["code"]
     counts: Counter[str] = Counter()

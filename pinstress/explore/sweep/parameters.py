@@ -1,4 +1,4 @@
-"""The numbers of a study that vary, each by its law."""
+"""The varying numbers of a study, each with its law."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from pinstress.study.schema.thermal_units import difference_of
 from pinstress.study.schema.units import UnitSystem
 from pinstress.study.schema.vary import ParameterTable
 
-MIN_PROBABILITY_WITHIN_LIMITS = 1e-6  # of the probability: a law must not be cut off so far
+MIN_PROBABILITY_WITHIN_LIMITS = 1e-6  # smallest probability that limits must leave of a law
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Parameter:
     """A number that varies by a law (SI).
 
     steps: number of its values in a grid.
-    source: the law as the study gives it, where that says more than the law itself.
+    source: the tolerance from which the law was made, as the study gives it; else empty.
     """
 
     number: Number
@@ -46,32 +46,30 @@ class Parameter:
 
     @property
     def key(self) -> str:
-        """Return the number's key."""
+        """The number's key."""
         return self.number.key
 
     @property
     def dimension(self) -> str:
-        """Return the number's dimension; empty for a number without one."""
+        """The number's dimension; empty for a number without one."""
         return self.number.dimension
 
     @property
     def nominal(self) -> float:
-        """Return the number in the study, SI."""
+        """The value of the number in the study, SI."""
         return self.number.nominal
 
     def quantile(self, u: Floats) -> Floats:
-        """Return values (N,) in SI below which the number stays with probabilities u (N,)."""
+        """Return the quantiles (N,), SI, at probabilities u (N,)."""
         return self.law.quantile(u)
 
     def of_normal(self, z: Floats) -> Floats:
-        """Return values (N,) in SI as likely to be exceeded as z (N,) by a standard normal
-        variable.
-        """
+        """Return the quantiles (N,), SI, at the probabilities of standard normal deviates z."""
         return self.law.of_normal(z)
 
     @property
     def law_text(self) -> str:
-        """Describe the law in words, in the number's unit."""
+        """The law in words, in the number's unit."""
         text = self.law.text(self.number.text, self.number.spread_text)
         return f"{self.source}: {text}" if self.source else text
 
@@ -81,7 +79,7 @@ def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
 
     sampled: whether [vary] must also state which designs to sample.
 
-    Raises: InputError with all that is wrong, also for a study without [vary].
+    Raises: InputError with all errors, also for a study without [vary].
     """
     vary = study.table.vary
     if vary is None:
@@ -104,9 +102,9 @@ def parameters_of(study: Study, sampled: bool = True) -> tuple[Parameter, ...]:
 
 
 def require_laws(study: Study) -> None:
-    """Check that all numbers that vary have a law.
+    """Check that all varying numbers have a probability law.
 
-    Raises: InputError for numbers without a law, for which there is no probability.
+    Raises: InputError for numbers that have only a range.
     """
     for key, table in study.table.vary.parameters.items() if study.table.vary else ():
         if table.from_ is not None:
@@ -204,7 +202,10 @@ def _law(system: UnitSystem, number: Number, table: ParameterTable) -> Law:
 
 
 def _bell(si: Any, of_difference: Any, table: ParameterTable) -> Law:
-    """Return a law of a mean and a deviation, which is a difference of two values."""
+    """Return a normal or lognormal law of a mean and a deviation.
+
+    si: converts values to SI. of_difference: converts a difference of two values to SI.
+    """
     name = "normal" if table.normal is not None else "lognormal"
     first, second = table.normal or table.lognormal or (0.0, 0.0)
     (mean,), deviation = si(name, [first]), of_difference(name, second)

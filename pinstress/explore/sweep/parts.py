@@ -1,5 +1,6 @@
-"""Storage of solved designs, each batch in a file of its own, so that a sweep that is interrupted,
-in whatever way, loses no more than the batches in work.
+"""Storage of the solved designs of a sweep, each batch in its own file.
+
+A sweep that is interrupted in any way loses only the unfinished batches.
 """
 
 from __future__ import annotations
@@ -21,20 +22,20 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 PARTS_FOLDER = "parts"
-IDENTITY_FILE = "sweep.json"  # what is swept, in the folder of parts
+IDENTITY_FILE = "sweep.json"  # the identity of the sweep, in the folder of parts
 SWEEP_SCHEMA = "pinstress-sweep/1"
 PART_SUFFIX = ".parquet"
 DESIGNS_FILE = "designs.parquet"
-CONTINUABLE_SAMPLES = "sobol", "random"  # samples of which more begin with the same designs
+CONTINUABLE_SAMPLES = "sobol", "random"  # a larger sample begins with the designs of a smaller one
 
 
 @dataclass(frozen=True)
 class Identity:
     """The identity of a sweep.
 
-    sweep: a hash of all on which numbers depend.
-    but_count: a hash of all but the number of designs.
-    count: that number.
+    sweep: a hash of all data on which the numbers depend.
+    but_count: a hash of the same data without the number of designs.
+    count: the number of designs.
     sample: the kind of sample.
     """
 
@@ -45,9 +46,9 @@ class Identity:
 
 
 class BatchFolder:
-    """Files of one sweep in a folder `parts` of an output folder.
+    """The files of one sweep in the folder `parts` of an output folder.
 
-    sweep: its identity.
+    sweep: the hash that identifies the sweep.
     """
 
     def __init__(self, directory: Path, identity: Identity) -> None:
@@ -55,34 +56,36 @@ class BatchFolder:
         self.sweep = identity.sweep
 
     def begin(self) -> None:
-        """Make the folder, with only the identity of the sweep in it.
+        """Create the folder with only the identity of the sweep in it.
 
-        Batches of a sweep that was killed while they were removed are of other numbers.
+        Old batches are removed first: a sweep that was killed while it removed its batches may have
+        left some with other numbers.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         self._clear()
         self._state()
 
     def _state(self) -> None:
-        """Write the identity of the sweep, with which it has begun."""
+        """Write the identity of the sweep; from then on the sweep has begun."""
         identity = self.identity
         stated = {"sweep": identity.sweep, "but_count": identity.but_count, "count": identity.count}
         text = json.dumps({"schema": SWEEP_SCHEMA, **stated}, indent=1) + "\n"
         write_inside(self.folder, IDENTITY_FILE, text.encode())
 
     def there(self) -> bool:
-        """Return whether a sweep was begun here."""
+        """Whether a sweep has begun in this folder."""
         return stated(self.folder) is not None
 
     @property
     def finished(self) -> bool:
-        """Return whether the folder has this sweep's whole table."""
+        """Whether the output folder has the complete table of this sweep."""
         return not self.there() and stated(self.folder.parent) == self.sweep
 
     def require_same(self) -> None:
         """Check that the parts are those of this sweep.
 
-        Raises: InputError where they are of another sweep.
+        Raises: InputError if there are none, or if they belong to another sweep that this one
+        cannot continue.
         """
         known, ours, before = self._stated, self.identity, self.count_before
         if not known:
@@ -115,13 +118,13 @@ class BatchFolder:
 
     @property
     def _stated(self) -> dict[str, Any]:
-        """Return the stated identity of the sweep that is here."""
+        """The stated identity of the sweep in the folder; empty if there is none."""
         return _read(self.folder) or _read(self.folder.parent)
 
     @property
     def count_before(self) -> int | None:
-        """Return the number of designs of a sweep that is here and differs only in that number;
-        else None.
+        """The number of designs of the sweep in the folder, if it differs from this one only in
+        this number; else None.
         """
         known, identity = self._stated, self.identity
         other = (
@@ -130,9 +133,9 @@ class BatchFolder:
         return int(known["count"]) if other else None
 
     def continue_with(self, schema: pa.Schema) -> None:
-        """Take over the designs of a sweep with fewer: its batches, or its whole table.
+        """Take over the designs of a sweep with fewer designs: its batches, or its complete table.
 
-        A sweep that is killed inside is taken over again.
+        If this is interrupted, it can be repeated.
         """
         if self.there():
             tables = [table for _, table in self._tables() if table is not None]
@@ -150,8 +153,8 @@ class BatchFolder:
         write_table(table, self.folder / f"{number:08d}{PART_SUFFIX}")
 
     def read(self, schema: pa.Schema) -> list[pa.Table]:
-        """Return all batches; a file that is damaged, or of other columns, is removed and solved
-        anew.
+        """Return all batches. A file that is damaged or has other columns is removed; its designs
+        are solved again.
         """
         tables = []
         for path, table in self._tables():
@@ -174,11 +177,11 @@ class BatchFolder:
 
     @property
     def count(self) -> int:
-        """Return the number of batches."""
+        """The number of batches."""
         return len(list(self.folder.glob(f"*{PART_SUFFIX}")))
 
     def finish(self) -> None:
-        """Remove the parts when the whole table is written; the identity stays beside that."""
+        """Remove the parts after the complete table is written; the identity stays beside it."""
         (self.folder / IDENTITY_FILE).replace(self.folder.parent / IDENTITY_FILE)
         self.remove()
 
@@ -196,7 +199,7 @@ class BatchFolder:
 
 
 def is_ours(name: str) -> bool:
-    """Return whether an entry of an output folder is one of its parts."""
+    """Whether an entry of an output folder belongs to its parts."""
     if name == f"{PARTS_FOLDER}/":
         return True
     folder, _, file = name.partition("/")
@@ -208,16 +211,16 @@ def is_ours(name: str) -> bool:
 
 
 def identity(study: Study, *chosen: object) -> Identity:
-    """Return the identity of the sweep of a study; the hashes include all on which its numbers
+    """Return the identity of the sweep of a study; its hashes cover all data on which the numbers
     depend.
 
-    chosen: pins, cases.
+    chosen: the chosen pins and cases.
     """
     import tomlkit
 
     from pinstress.analysis.cache import program
 
-    vary = study.table.vary  # a sweep of a study without is refused by who reads its parameters
+    vary = study.table.vary  # a study without [vary] is refused when its parameters are read
     document = tomlkit.parse(study.text)
     document.get("vary", {}).pop("count", None)
     values, version = inputs(study), program()
@@ -229,7 +232,9 @@ def identity(study: Study, *chosen: object) -> Identity:
 
 
 def stated(folder: Path) -> str | None:
-    """Return the identity of the sweep whose parts a folder has."""
+    """Return the hash that identifies the sweep whose identity file is in a folder; None without
+    one.
+    """
     sweep: str | None = _read(folder).get("sweep")
     return sweep
 

@@ -1,4 +1,4 @@
-"""Whether the designs of a study can be built and are in equilibrium, before any is solved."""
+"""The check that designs of a study can be built and are in equilibrium, before any is solved."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 from pinstress.study.schema.cases import GivenCase
 
-# Where a tenth is impossible, 97 % of 32 designs find one; they take a millisecond each, with a
-# mechanism a tenth of a second.
+# If a tenth of the designs is impossible, 32 of them include an impossible one with a probability
+# of 97 %. A design takes a millisecond, with a mechanism a tenth of a second.
 TRIED_DESIGNS, TRIED_MECHANISMS = 32, 8
-MAX_TRIED_RANGES = 20  # each end takes as long as a design
-# A value in a message, but no index of a key ("profile[2]") and no number of a line (":18:").
+MAX_TRIED_RANGES = 20  # each end of a range takes as long as a design
+# A value in a message, but not the index of a key ("profile[2]") or a line number (":18:").
 VALUE_PATTERN = re.compile(r"(?<![\w.\[:])[-+]?\d[\d,]*(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w\]])")
 
 
 @dataclass
 class Cause:
-    """Why designs cannot be built: the message of one of them.
+    """A cause for which designs cannot be built.
 
-    ends: of the ranges whose ends are such designs, by key. designs: how many of those tried are.
+    reason: the message of one such design. ends: the ends of ranges that give such designs, by key.
+    designs: number of such designs among those tried.
     """
 
     reason: str
@@ -45,7 +46,7 @@ Causes = dict[tuple[str, str], Cause]  # by code, and by the message without its
 
 
 def drawn(study: Study, parameters: Sequence[Parameter]) -> Floats:
-    """Return designs (N, p), SI, drawn by the laws of the parameters, always the same."""
+    """Return designs (N, p), SI, drawn by the laws of the parameters with a fixed seed."""
     matrix = correlations_of(study, parameters, sampled=False)
     z = np.random.default_rng(0).standard_normal((TRIED_DESIGNS, len(parameters)))
     z = z if matrix is None else z @ root_of(matrix).T
@@ -55,8 +56,8 @@ def drawn(study: Study, parameters: Sequence[Parameter]) -> Floats:
 def impossible_designs(
     study: Study, evaluator: Evaluator, parameters: Sequence[Parameter], values: Floats
 ) -> list[str]:
-    """Return a warning for each cause for which designs cannot be built: at ends of ranges, with
-    all other numbers as in the study, and in some of the designs.
+    """Return a warning for each cause for which designs cannot be built. Tried are the ends of
+    ranges, with all other numbers as in the study, and some of the designs.
 
     values: (N, p) of the parameters, SI.
 
@@ -80,12 +81,12 @@ def _warning(cause: Cause, count: int, parameters: Sequence[Parameter]) -> str:
 
 
 def tried(study: Study, evaluator: Evaluator, values: Floats, causes: Causes) -> int:
-    """Build some designs and their loads, without solving any; return how many.
+    """Build some designs and their loads, without solving any, and return their number.
 
-    values: (N, p) of the parameters, SI; some rows, evenly spaced, are tried.
-    causes: gains those for which designs cannot be built.
+    values: (N, p) of the parameters, SI; evenly spaced rows are tried.
+    causes: the causes for which designs cannot be built are added to this.
 
-    Raises: InputError where given forces that vary one by one leave pins out of equilibrium that
+    Raises: InputError if given forces that vary independently leave pins out of equilibrium that
     are in equilibrium as the study describes them.
     """
     most = TRIED_DESIGNS if study.table.mechanism is None else TRIED_MECHANISMS
@@ -116,9 +117,8 @@ def tried(study: Study, evaluator: Evaluator, values: Floats, causes: Causes) ->
 
 
 def _impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> Causes:
-    """Return why designs at ends of ranges cannot be built, with all other numbers as in the study.
-
-    Only uniform and triangular laws have ends.
+    """Return the causes for which designs at the ends of ranges cannot be built, with all other
+    numbers as in the study. Only uniform and triangular laws have ends.
     """
     nominal = [number.nominal for number in evaluator.numbers]
     causes: Causes = {}
@@ -136,10 +136,10 @@ def _impossible_ends(evaluator: Evaluator, parameters: Sequence[Parameter]) -> C
 
 
 def _causes_of(error: InputError | ArithmeticError, causes: Causes) -> list[Cause]:
-    """Return the causes of a design that cannot be built; new ones are added to those known.
+    """Return the causes for which a design cannot be built; new ones are added to the known ones.
 
-    Messages that differ in their values alone, as "1.05 times as large" and "2 times as large",
-    have one cause.
+    Messages that differ only in their values, such as "1.05 times as large" and "2 times as large",
+    have the same cause.
     """
     if not isinstance(error, InputError):
         error = InputError(str(error).partition("\n")[0])
@@ -150,7 +150,10 @@ def _causes_of(error: InputError | ArithmeticError, causes: Causes) -> list[Caus
 
 
 def require_balance(study: Study, evaluator: Evaluator, values: Floats) -> None:
-    """Refuse designs as `tried` does, at once, where any given force varies."""
+    """Check the equilibrium of designs as `tried` does, if any given force varies.
+
+    Raises: InputError as `tried` does.
+    """
     paths = [path for number in evaluator.numbers for path in number.paths]
     if any(path[0] == "case" and path[2] in ("forces", "moments") for path in paths):
         tried(study, evaluator, values, {})
@@ -159,7 +162,7 @@ def require_balance(study: Study, evaluator: Evaluator, values: Floats) -> None:
 def _unheld_rows(
     study: Study, evaluator: Evaluator, values: Iterable[float]
 ) -> dict[tuple[str, str], str]:
-    """Return why pins of a design are out of equilibrium, by pin and case.
+    """Return why pins of a design are out of equilibrium, by pin and case; empty if none is.
 
     Raises: InputError for a design that cannot be built.
     """
@@ -176,7 +179,7 @@ def _unheld_rows(
 
 
 def _closing(study: Study, pin: str, case: str, evaluator: Evaluator) -> str:
-    """Return a connection of a pin whose force does not vary; the last if all do."""
+    """Return a connection of a pin whose force does not vary; the last one if all vary."""
     varied = {path[3] for number in evaluator.numbers for path in number.paths
               if path[:3] == ("case", case, "forces") and len(path) > 3}  # fmt: skip
     connections = study.connections(pin)

@@ -1,4 +1,4 @@
-"""The designs of a sweep: values of the parameters, the same for the same seed."""
+"""The designs of a sweep: values of the parameters, reproducible by a seed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pinstress.explore.sweep.laws import Floats, Uniform
 from pinstress.explore.sweep.parameters import Parameter
 from pinstress.study.schema.vary import VaryTable
 
-# How close a probability may come to 0 and 1, where a normal law has no value
+# Smallest distance of a probability from 0 and 1, where a normal law is infinite
 MIN_PROBABILITY = 2.0**-53
 
 
@@ -21,7 +21,7 @@ def designs_of(
 ) -> Floats:
     """Return values (N, p) in SI, a row for each design.
 
-    correlations: (p, p) of the normal variables.
+    correlations: (p, p) correlation matrix of the normal variables; None if independent.
     """
     if vary.sample == "grid":
         axes = np.meshgrid(*map(_on_grid, parameters), indexing="ij")
@@ -41,7 +41,9 @@ def designs_of(
 
 
 def _on_grid(parameter: Parameter) -> Floats:
-    """Return values of a parameter on a grid; a law has the middles of equally likely parts."""
+    """Return the values of a parameter on a grid: evenly spaced for a uniform law, else the medians
+    of equally likely parts.
+    """
     steps = parameter.steps or 1
     if isinstance(parameter.law, Uniform):
         if steps == 1:
@@ -57,7 +59,7 @@ def _points(vary: VaryTable, count: int) -> Floats:
     if vary.sample == "random":
         return np.random.default_rng(vary.seed).random((vary.count, count))
     engine = qmc.Sobol if vary.sample == "sobol" else qmc.LatinHypercube
-    # They warn of a count that is no power of 2, which docs/sweep.md explains.
+    # SciPy warns of a count that is not a power of 2, which docs/sweep.md explains.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         points = engine(count, rng=np.random.default_rng(vary.seed)).random(vary.count)

@@ -1,8 +1,8 @@
-"""Batches of designs, or other work, solved on the user's own cluster: a Dask scheduler and its
+"""Batches of designs, or other work, solved on an existing cluster: a Dask scheduler and its
 workers.
 
-Before a worker's rows are kept, it has reported the same versions as this process, and the files
-that the study names are sent to it: files at the same paths there are not read.
+The rows of a worker are kept only if it has reported the same versions as this process. The files
+that the study names are sent to the worker; files at the same paths on its machine are not read.
 """
 
 from __future__ import annotations
@@ -29,15 +29,16 @@ from pinstress.explore.sweep.versions import versions
 from pinstress.study.model.imported_pin import MAX_BODY_SIZE
 from pinstress.study.reading.errors import InputError
 
-# Batches for each worker, one that is solved and others that wait: of about 2 s each
-# (batches.TARGET_BATCH_SECONDS), so that an adaptive cluster, which starts workers while each would
-# have more than 5 s of work (adaptive.target-duration of dask), grows while there are batches.
+# Batches per worker: one that is solved and others that wait, of about 2 s each
+# (batches.TARGET_BATCH_SECONDS). An adaptive cluster starts workers while each would have more than
+# 5 s of work (Dask's adaptive.target-duration), so it grows as long as there are batches.
 BATCHES_PER_WORKER = 4
-WAITING_STATES = "pending", "lost"  # states of a batch that is solved, or must be once more
-BATCH_POLL_INTERVAL = 0.05  # s between two looks at which batches are done
+WAITING_STATES = "pending", "lost"  # states of a batch that is being solved, or solved again
+BATCH_POLL_INTERVAL = 0.05  # time between two checks which batches are done, s
 NUMERIC_PACKAGES = (*(name for name in REQUIRED_PACKAGES if name != "pinstress"), "distributed")
 
-# A worker without pinstress can begin it, and says what it misses; reading our own task it ends.
+# A worker without pinstress can evaluate this and report what is missing; a task of our own classes
+# could not be unpickled, which ends the worker.
 BATCH_EXPRESSION = "(lambda do, *what: do(*what))(*__import__('pickle').loads(sent))"
 
 Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
@@ -45,8 +46,8 @@ Contents = tuple[tuple[str, bytes], ...]  # of files by their paths
 
 @dataclass(frozen=True)
 class WorkerAnswer:
-    """The answer of a worker: its address and versions; the result, None if it first needs the
-    files.
+    """The answer of a worker: its address, its versions, and the result, which is None if the
+    worker first needs the files.
     """
 
     worker: str
@@ -55,20 +56,20 @@ class WorkerAnswer:
 
 
 class FilesProblem(Protocol):
-    """All that a worker needs to solve an item, as text, and a hash of the files beside it."""
+    """The interface of a problem: all data that a worker needs, with a hash of the sent files."""
 
     @property
     def files(self) -> str: ...
 
 
 class WorkQueue(Protocol):
-    """Items of work, and what becomes of them."""
+    """The interface of a queue of work items, which also receives their results."""
 
     def spread_over(self, workers: int) -> None:
-        """Size further items for a number of workers."""
+        """Adapt the size of further items to a number of workers."""
 
     def take(self) -> Any:
-        """Return the next item; None while there is none."""
+        """Return the next item; None if there is none at present."""
 
     def done(self, done: Any) -> None:
         """Keep a result."""
@@ -77,7 +78,7 @@ class WorkQueue(Protocol):
         """Record that the process of an item ended by itself."""
 
 
-_contents: dict[str, Contents] = {}  # in a worker: of the study that is solved, by their hash
+_contents: dict[str, Contents] = {}  # in a worker: the files of its study, by their hash
 
 
 def cluster_at(
@@ -87,7 +88,7 @@ def cluster_at(
 
     tell: called with warnings.
 
-    Raises: InputError where there is no scheduler, no worker, or one with other versions.
+    Raises: InputError if there is no scheduler, no worker, or a worker with other versions.
     """
     return connected(connection, NUMERIC_PACKAGES, tell)
 
@@ -101,11 +102,11 @@ def solve_on(
 ) -> None:
     """Solve batches, or other items, on a cluster.
 
-    problem: a dataclass that is a FilesProblem. files: those that the study names.
-    solve: solves an item of a problem.
+    problem: a dataclass that is a FilesProblem. files: the files that the study names.
+    solve: a function that solves an item of a problem.
 
-    Raises: InputError where the scheduler or all workers are lost, or a worker that has come has
-    other versions; batches kept by then stay.
+    Raises: InputError if the scheduler or all workers are lost, or if a new worker has other
+    versions; results received before that are kept.
     """
     contents = contents_of(files)
     problem = replace(problem, files=hash_of(contents))
@@ -143,7 +144,7 @@ def solve_on(
 def require_cluster(connection: ClusterConnection) -> None:
     """Check in another process that a cluster can solve designs.
 
-    This one then still has no thread of Dask's, beside which it could not fork.
+    This process then has no threads of Dask, with which it could not fork.
 
     Raises: InputError, as `cluster_at`.
     """
@@ -158,8 +159,8 @@ def _connect(connection: ClusterConnection, _: Tell) -> None:
 def solve_there(
     solve: Callable[[Any, Any], Any], problem: FilesProblem, contents: Contents | None, item: Any
 ) -> WorkerAnswer:
-    """Solve an item in a worker, with the contents of the study's files, if they are given or were
-    before.
+    """Solve an item in a worker, if the contents of the study's files are given now or were given
+    before. Otherwise the answer has no result.
     """
     if contents is not None:
         _contents.clear()
@@ -180,7 +181,7 @@ def _versions_here() -> dict[str, str]:
 def contents_of(files: tuple[Path, ...]) -> Contents:
     """Return the contents of files.
 
-    Raises: InputError where one cannot be read.
+    Raises: InputError if a file cannot be read.
     """
     contents = []
     for path in files:
@@ -200,12 +201,12 @@ def hash_of(contents: Contents) -> str:
 
 
 def _outcome(cluster: Cluster, future: Future[WorkerAnswer]) -> WorkerAnswer | KilledWorker | None:
-    """Return the answer for a batch; None while it is not done, or where its worker has gone with
-    it, so that it is solved again.
+    """Return the answer for a batch; None while it is not done, also if its worker was lost and the
+    batch is solved again.
 
-    Raises: InputError where the connection is lost, or a worker cannot do it.
+    Raises: InputError if the connection is lost, or if a worker cannot solve the batch.
     """
-    # Read once: Dask changes it in another thread, to a state of waiting where a worker dies now.
+    # Read the status once: Dask's thread may change it, to a waiting state if a worker dies now.
     status = future.status
     if status in WAITING_STATES:
         return None

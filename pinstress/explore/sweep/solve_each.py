@@ -1,8 +1,8 @@
-"""A pin of revolution under many prescribed loads, each solved as if it were alone.
+"""A pin of revolution under many prescribed loads, with the result that each load has by itself.
 
-The loads share unit fields and are superposed together as long as they take the same meshes. The
-numbers are those that `fea.solve.solve` has for each, to round-off, and do not depend on which
-loads are solved together.
+The loads share unit fields and are superposed together as long as they use the same meshes. The
+numbers are those of `fea.solve.solve` for each load, to round-off, and do not depend on which loads
+are solved together.
 """
 
 from __future__ import annotations
@@ -33,10 +33,12 @@ from geometry import Pin
 
 
 def superposable(problem: PinProblem, requirement: Requirement) -> bool:
-    """Whether the single case of a pin can be solved with others that differ by their loads.
+    """Whether the single case of a pin can be solved together with others that differ only by their
+    loads.
 
-    The harmonic model is sure to answer it, and what it depends on is known beforehand: an instant
-    of prescribed loads, on few fillets, where the goal is the stress itself.
+    This requires that the harmonic model certainly solves the case and that its dependencies are
+    known beforehand: one instant of prescribed loads, few fillets, and the stress itself as the
+    goal.
     """
     (loads,) = problem.cases
     pin = problem.pin
@@ -50,11 +52,12 @@ def superposable(problem: PinProblem, requirement: Requirement) -> bool:
 def solve_each(
     problem: PinProblem, every: tuple[PinLoads, ...], requirement: Requirement
 ) -> list[Maximum | None]:
-    """The maxima of a pin under loads of one case, in their order; None where loads must be solved
-    alone, as nothing acts, a beam may do, the pin is not held, or memory is short.
+    """Return the maxima of a pin under each of several loads of one case, in their order. None for
+    a load that must be solved alone: because nothing acts, a beam may suffice, the pin is
+    unconstrained, or memory is short.
 
-    problem: of any of the loads, as `superposable` has it. every: one instant each, on the same
-    surfaces.
+    problem: the problem of any of the loads, for which `superposable` holds. every: loads of one
+    instant each, on the same surfaces.
 
     Raises: MeshError, SolveError.
     """
@@ -74,7 +77,9 @@ def solve_each(
 
 @dataclass(frozen=True)
 class LoadGroup:
-    """Loads in which the same unit loads act, each held by itself, and their problem of meshes."""
+    """A group of loads with the same unit loads, each with its own support, and their common mesh
+    problem.
+    """
 
     problem: PinProblem
     every: tuple[PinLoads, ...]
@@ -84,7 +89,7 @@ class LoadGroup:
     meshes: MeshProblem
 
     def together(self, some: Sequence[int]) -> PinLoads:
-        """Some of the loads, by their numbers, as so many instants."""
+        """Return some of the loads, by their numbers, as the instants of one set of loads."""
         forces, moments, body = (
             np.concatenate([getattr(self.every[k], name) for k in some])
             for name in ("forces", "moments", "body")
@@ -101,7 +106,9 @@ def _posed(problem: PinProblem, every: tuple[PinLoads, ...], requirement: Requir
 
 
 def _maxima(group: LoadGroup) -> dict[int, Maximum]:
-    """The maxima of loads by their numbers."""
+    """Return the maxima by the numbers of the loads."""
+    # All loads of a group refine mesh by mesh; a load leaves the group when its maximum is accurate
+    # enough, and loads that refine at different places are solved on separate meshes.
     requirement, model, case = group.requirement, group.model, group.every[0].case
     left = [k for k, held in enumerate(group.held) if not held.failures]
     if not left:
@@ -138,7 +145,7 @@ def _maxima(group: LoadGroup) -> dict[int, Maximum]:
 
 
 def _of_same_mesh(left: list[int], seen: Mapping[int, MeshHistory]) -> list[list[int]]:
-    """The numbers of loads whose next mesh is the same."""
+    """Return the numbers of loads in groups whose next mesh is the same."""
     groups: dict[object, list[int]] = {}
     for k in left:
         last = seen[k].results[-1:]
@@ -149,7 +156,7 @@ def _of_same_mesh(left: list[int], seen: Mapping[int, MeshHistory]) -> list[list
 
 
 def _on_mesh(group: LoadGroup, some: list[int], level: int, seen: MeshHistory) -> EachOnMesh:
-    """Some loads on their next mesh; seen: the meshes before of one of them."""
+    """Return some loads on their next mesh; seen: the mesh history of any of them."""
     before = MeshBefore(None, {seen.case: seen.results[-1]}) if seen.results else None
     posed = replace(group.meshes, cases=(group.every[some[0]],))
     solution = group.model.solve(posed, level, before).solution
@@ -157,7 +164,7 @@ def _on_mesh(group: LoadGroup, some: list[int], level: int, seen: MeshHistory) -
 
 
 def _with_growth(seen: MeshHistory, each: EachOnMesh, position: int) -> MeshHistory:
-    """The history with the growth of stress in the zones that govern on the last mesh."""
+    """Return the history with the stress growth in the zones that govern on the last mesh."""
     *before, last = seen.results
     if not last.governed:
         return seen
@@ -165,7 +172,7 @@ def _with_growth(seen: MeshHistory, each: EachOnMesh, position: int) -> MeshHist
 
 
 def _sections(group: LoadGroup, some: list[int]) -> list[FoundSection]:
-    """The largest stress of sections under each of some loads."""
+    """Return the largest section stress under each of some loads."""
     pin, loads = group.problem.pin, group.together(some)
     assert isinstance(pin, Pin)
     field = SectionField(pin, group.problem.material, group.held[0].clamps, (loads,))
@@ -178,7 +185,7 @@ def _sections(group: LoadGroup, some: list[int]) -> list[FoundSection]:
 
 
 def _judged(group: LoadGroup, k: int, seen: MeshHistory, section: FoundSection) -> Maximum:
-    """The row of loads, by their number, from their last mesh and their sections."""
+    """Return the row of load k from its mesh history and its section stress."""
     requirement, material, loads = group.requirement, group.problem.material, group.every[k]
     held = group.held[k]
     evidence = evidence_of(seen, group.meshes.zones, held.notes.get(seen.case, NO_REASON))

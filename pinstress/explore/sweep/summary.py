@@ -19,14 +19,14 @@ from reports.format.words import not_judged
 if TYPE_CHECKING:
     import pyarrow as pa
 
-MAX_PRINTED_REASONS = 3  # that are printed, the commonest
+MAX_PRINTED_REASONS = 3  # largest number of printed reasons, the most frequent first
 UNSOLVED_VERDICTS = ("failed", "rigid")  # verdicts without numbers
 MAX_REASON_LENGTH = 100  # characters of a reason
 
 
 def summary(table: pa.Table, console: Console) -> None:
-    """Print how many designs there are and failed, why, and by pin the range of its factor (of its
-    maximum without a yield strength) with the worst and the best design.
+    """Print the numbers of designs and of failed designs, the reasons, and for each pin the range
+    of its safety factor with the worst and the best design and the largest stress.
     """
     stated = facts(table)
     rows: list[dict[str, Any]] = table.select(
@@ -81,14 +81,14 @@ def summary(table: pa.Table, console: Console) -> None:
 
 
 def _below(row: dict[str, Any], required: float | None) -> bool:
-    """Return whether a row misses its factor, its own where `required` is None."""
+    """Whether a row misses the required factor, or its own one if `required` is None."""
     if required is None:
         return bool(row["outcome"] == FAILS)
     return (row["safety_factor"] or required) < required
 
 
 def _reasons(rows: list[dict[str, Any]]) -> list[str]:
-    """Return the commonest reasons of failure, by code, each with an example."""
+    """Return the most frequent reasons of failure, by code, each with an example."""
     failed = [row for row in rows if row["verdict"] in UNSOLVED_VERDICTS]
     counts = Counter(row["code"] for row in failed)
     lines = []
@@ -111,7 +111,7 @@ def _range(rows: list[dict[str, Any]], required: float | None) -> tuple[str, str
     worst_of: dict[int, float] = {}
     for row in solved:
         number, stress = row["design"], row["max_von_mises"]
-        factor = row["safety_factor"]  # None without a strength, and without stress, the best
+        factor = row["safety_factor"]  # None without a strength, or without stress (the best case)
         size = -factor if factor is not None else stress or -math.inf
         worst_of[number] = max(worst_of.get(number, -math.inf), size)
     worst = max(worst_of, key=lambda number: worst_of[number])

@@ -1,4 +1,4 @@
-"""Pins of designs as they are to be solved, and those together that differ by their loads alone."""
+"""Tasks of designs, and the common solution of tasks that differ only by their loads."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ Rows = tuple[PinResult, ...]
 
 @dataclass(frozen=True)
 class PosedTask:
-    """A pin of a design in some cases, as it is to be solved.
+    """A pin of a design in some load cases, ready to be solved.
 
-    loads: by case. alike: all but loads on which the answer depends, as a hash; key: all.
+    loads: by case. alike: hash of all data except loads on which the result depends. key: hash of
+    all data on which it depends.
     """
 
     study: Study
@@ -45,24 +46,23 @@ def posed_task(
     loads: Mapping[str, CaseLoads],
     alike: str | None = None,
 ) -> PosedTask:
-    """Return a task with the hashes of what its answer depends on in a study whose mechanism does
-    not change.
+    """Return a task with the hashes of the data on which its result depends.
 
-    alike: of a task that differs by its loads alone, if one is known.
+    alike: the hash of a task that differs only by its loads, if known.
     """
     alike = alike or _alike(study, task, requirement)
     factors = required_factors(study, task.pin.name, (x.case for x in task.loads))
-    # Impulses of other ranges may have the same forces.
+    # The ranges are part of the key, because impulses with different ranges may have equal forces.
     ranges = [loads[x.case].range for x in task.loads]
     key = digest((alike, task.clamps, task.loads, task.also, task.shared, ranges, factors))
     return PosedTask(study, task, requirement, loads, alike, key)
 
 
 def superposed(posed: Iterable[PosedTask], memo: Memo) -> dict[str, Rows]:
-    """Return the rows, by key, of those tasks that are solved together with others; they are what
-    each has when it is solved alone.
+    """Return the rows, by key, of the tasks that can be solved together with others. The rows are
+    the same as if each task were solved alone.
 
-    memo: of meshes and unit fields.
+    memo: meshes and unit fields.
     """
     groups: dict[tuple[object, ...], dict[str, PosedTask]] = {}
     for one in posed:
@@ -78,7 +78,7 @@ def superposed(posed: Iterable[PosedTask], memo: Memo) -> dict[str, Rows]:
 
 
 def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
-    """Return the rows of tasks that differ by their loads, as far as they can be superposed."""
+    """Return the rows of tasks that differ only by their loads, if these can be superposed."""
     from fea.support.support import Solution
     from pinstress.explore.sweep.solve_each import solve_each, superposable
 
@@ -90,7 +90,7 @@ def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
     try:
         maxima = solve_each(problem, tuple(x.task.loads[0] for x in group), requirement)
     except (ArgumentError, ArithmeticError, MemoryError):
-        return {}  # each says by itself what is wrong
+        return {}  # each task is solved alone and reports its own error
     return {
         one.key: (bare_row(one.task, Solution(maximum, None, one.task.loads[0]), one.loads),)
         for one, maximum in zip(group, maxima, strict=True)
@@ -99,8 +99,8 @@ def _together(group: Sequence[PosedTask], memo: Memo) -> dict[str, Rows]:
 
 
 def elastic(material: Material) -> Material:
-    """Return a material without its strengths, on which no stress depends; those of a hardened
-    surface decide where stress governs.
+    """Return a material without its strengths, on which the stress does not depend. A hardened
+    material keeps them, because they decide where stress governs.
     """
     if material.hardened:
         return material

@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 
 
 class Store(Protocol):
-    """A store in which batches are kept."""
+    """The interface of a store of solved batches."""
 
     @property
     def count(self) -> int:
@@ -69,7 +69,7 @@ class MemoryStore:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A planned sweep: parameters, and the designs' values (N, p) in SI."""
+    """A planned sweep: the parameters, and the values (N, p) of the designs in SI."""
 
     study: Study
     parameters: tuple[Parameter, ...]
@@ -80,7 +80,7 @@ class Sweep:
 def planned(
     study: Study, pins: Sequence[str] | None = None, cases: Sequence[str] | None = None
 ) -> Sweep:
-    """Plan the designs of a study with [vary]; the study itself is read and found usable.
+    """Plan the designs of a study with [vary], and check that the study can be run.
 
     Raises: InputError.
     """
@@ -104,8 +104,8 @@ def solved(
     """Return the table of all designs; those in the store are not solved again.
 
     jobs: processes on this machine, by default as many as there are cores.
-    connection: to a Dask cluster that solves them instead.
-    report: called with the number of designs that are solved, and of all.
+    connection: connection to a Dask cluster that solves them instead.
+    report: called with the number of solved designs and the number of all designs.
     tell: called with warnings about a cluster.
 
     Raises: InputError.
@@ -128,7 +128,8 @@ def solved(
         count += len(rising)
         report(count, total)
 
-    evaluator = evaluator_of(sweep.problem)  # for forked processes, too, before Arrow has threads
+    # Made here also for forked processes, before Arrow starts threads.
+    evaluator = evaluator_of(sweep.problem)
 
     def batches(at_once: int) -> Batches:
         return Batches(sweep.problem.numbers, sweep.values, done, at_once)
@@ -160,14 +161,14 @@ def sweep(
     tls: Path | str | None = None,
     insecure: bool = False,
 ) -> pa.Table:
-    """Solve the designs of a study's [vary]; return a table with a row for each design, pin and
+    """Solve the designs of a study's [vary], and return a table with a row for each design, pin and
     case, as in designs.parquet (docs/sweep.md).
 
     pins, cases: names; all by default.
     jobs: number of processes (None: number of cores).
-    scheduler: address of a Dask scheduler instead, whose workers solve them.
-    tls: folder of the keys of that cluster, which `pinstress cluster-keys` writes.
-    insecure: whether a scheduler beyond this machine may be without keys.
+    scheduler: address of a Dask scheduler whose workers solve the designs instead.
+    tls: folder with the keys of that cluster, which `pinstress cluster-keys` writes.
+    insecure: whether the connection to a scheduler beyond this machine may be unencrypted.
 
     Raises: InputError for bad input. A design that fails is a row with its reason.
     """

@@ -1,7 +1,7 @@
 """The table of a sweep in Arrow and Parquet, in the study's units.
 
-It has a row for each design, pin and case. The file has no times, versions of ours or names of
-machines: the same study gives the same bytes.
+The table has a row for each design, pin and case. The file contains no times, program versions or
+machine names, so that the same study gives the same bytes.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from reports.tables.column import Column, fields
 if TYPE_CHECKING:
     import pyarrow as pa
 
-METADATA_KEY = b"pinstress"  # of the schema, a JSON text
-# Of a design's row, in SI; texts are not numeric. What people read has a heading.
+METADATA_KEY = b"pinstress"  # key of the schema's metadata, a JSON text
+# Columns of a design's row, in SI; texts are not numeric. Columns for the page have a heading.
 RESULT_COLUMNS: list[Column[DesignRow]] = [
     *fields("max_von_mises", "stress", heading="maximum von Mises"),
     *fields("error_estimate", "stress", heading="± of maximum"),
@@ -47,8 +47,9 @@ def table_of(
     parameters: Sequence[Parameter],
     designs: Sequence[tuple[int, Sequence[float], Sequence[DesignRow]]],
 ) -> pa.Table:
-    """Return the table of some designs, given by their numbers from 1, values (p,) in SI and
-    rows.
+    """Return the table of some designs.
+
+    designs: the number of each design, counted from 1, its values (p,) in SI, and its rows.
     """
     import pyarrow as pa
 
@@ -72,7 +73,7 @@ def table_of(
 
 
 def assembled(parts: Sequence[pa.Table]) -> pa.Table:
-    """Join all parts in the order of the designs."""
+    """Return the table of all parts in the order of the designs."""
     import pyarrow as pa
 
     whole = pa.concat_tables(parts)
@@ -86,7 +87,7 @@ def assembled(parts: Sequence[pa.Table]) -> pa.Table:
 
 
 def write_table(table: pa.Table, path: Path) -> None:
-    """Write a table so that its file is complete or absent.
+    """Write a table; its file is either complete or absent.
 
     Raises: OSError, also for a link.
     """
@@ -99,9 +100,9 @@ def write_table(table: pa.Table, path: Path) -> None:
 
 
 def read_table(path: Path) -> pa.Table:
-    """Read a table that was written.
+    """Return a table that was written before.
 
-    Raises: InputError where it cannot be read.
+    Raises: InputError if it cannot be read.
     """
     from pyarrow import ArrowException, parquet
 
@@ -116,8 +117,8 @@ def read_table(path: Path) -> pa.Table:
 
 
 def facts(table: pa.Table) -> dict[str, Any]:
-    """Return the study, hash, units and parameters that a table of a sweep names; empty for any
-    other.
+    """Return the metadata of a sweep's table (study, hash, units, parameters and more); empty for
+    any other table.
     """
     stated = (table.schema.metadata or {}).get(METADATA_KEY)
     metadata: dict[str, Any] = json.loads(stated) if stated else {}

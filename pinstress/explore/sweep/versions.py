@@ -1,7 +1,7 @@
-"""The versions on which numbers depend, reported by a Python that may have no pinstress.
+"""The versions on which numbers depend, reported by a Python in which pinstress may be missing.
 
-The text of this module is sent to other computers and run there: it imports nothing but the
-standard library.
+The text of this module is sent to other computers and run there, so it imports only the standard
+library.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from importlib import metadata, util
 from pathlib import Path
 
-# Whose source makes numbers and outcomes
+# The packages whose source determines numbers and outcomes
 OWN_PACKAGES = "pinstress", "pinbase", "loads", "geometry", "fea", "assess", "reports"
 MISSING_VERSION = "missing"
 SOURCE_HASH_DIGITS = 8
@@ -21,10 +21,10 @@ SOURCE_HASH_DIGITS = 8
 
 def versions(packages: Sequence[str]) -> dict[str, str]:
     """Return the versions of Python, of this program with the start of the hash of its source, and
-    of packages, MISSING_VERSION for one that cannot be imported.
+    of packages; MISSING_VERSION for a package that is not installed.
 
-    "code for" names the code that a system makes the program take (pinbase.platform); results of
-    the two differ in their last digits.
+    "code for" names the variant of the code that the program uses on this system
+    (pinbase.platform); results of the two variants differ in their last digits.
     """
     portable = sys.platform != "linux" or os.environ.get("PINSTRESS_PORTABLE") == "1"
     known = {

@@ -1,5 +1,5 @@
-"""Processes of this machine that solve batches: this one, or several over pipes, without a
-network.
+"""Processes of this machine that solve batches: this process, or several others over pipes, without
+a network.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ Lost = Callable[[Batch], SolvedBatch]
 
 
 class BatchQueue:
-    """The batches that are to be solved, with those whose process ended by itself.
+    """The queue of batches to be solved, which also handles batches whose process died.
 
-    Such a batch is halved until the design is known; that one is solved alone, since the process
-    may have ended by another one's need of memory, and given up if it ends its process again.
+    Such a batch is halved until the design that caused it is known. This design is then solved
+    while nothing else runs, since its process may have died because another one needed memory. If
+    its process dies again, the design is given up.
 
     keep: called with each batch as it ends, in any order.
-    lost: the rows of a design given up.
+    lost: a function that returns the rows of a design that was given up.
     """
 
     def __init__(self, batches: Batches, keep: Keep, lost: Lost) -> None:
@@ -38,12 +39,12 @@ class BatchQueue:
         self._in_work = 0
 
     def spread_over(self, workers: int) -> None:
-        """Size further batches for a number of workers."""
+        """Adapt the size of further batches to a number of workers."""
         self._batches.at_once = workers
 
     def take(self) -> Batch | None:
-        """Return the next batch to be solved; None while there is none, or one that must be solved
-        alone.
+        """Return the next batch to be solved; None if there is none at present, also while a design
+        must wait until it can be solved alone.
         """
         if self._again:
             batch = self._again.pop()
@@ -85,9 +86,9 @@ def solve_here(problem: DesignProblem, batches: Batches, keep: Keep) -> None:
 def solve_side_by_side(
     problem: DesignProblem, work: BatchQueue, jobs: int, tick: Callable[[], None] = lambda: None
 ) -> None:
-    """Solve batches in `jobs` processes of this machine, which keep the meshes that they made.
+    """Solve batches in `jobs` parallel processes of this machine, which reuse their own meshes.
 
-    tick: called several times in a second.
+    tick: called several times per second.
     """
     hold_threads()
     preload(*WORKER_MODULES)

@@ -98,7 +98,7 @@ def test_goals_of_pins(tmp_path: Path) -> None:
     alone = sizing_goal(load_study(file(tmp_path, often)), None, None)
     assert (alone.required, alone.of_pin("P")) == (4.0, {"often": 1.0, "seldom": 0.0})
     asked = sizing_goal(load_study(file(tmp_path, often)), 2.0, None)
-    assert (asked.required, asked.written, asked.more) == (2.0, 2.0, {})
+    assert (asked.required, asked.written, asked.multiples) == (2.0, 2.0, {})
     with pytest.raises(InputError, match="needs a factor"):
         sizing_goal(load_study(file(tmp_path, {"check": "shear", "factor": 4})), None, None)
 
