@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -39,6 +40,8 @@ os.environ["PINSTRESS_CACHE"] = ""  # tests solve anew, in other processes too
 
 resource_tracker.ensure_running()  # the tracker of spawned processes, which stays to the end
 
+gc.disable()  # until all is collected, which took twice as long with it
+
 ROOT = Path(__file__).parent.parent
 INCH = 0.0254
 LBF = 0.45359237 * 9.80665
@@ -70,6 +73,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if left_out:
             config.hook.pytest_deselected(items=left_out)
             items[:] = [item for item in items if item not in left_out]
+
+
+def pytest_collection_finish() -> None:
+    """What is imported by now stays, and is not looked through again and again."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(autouse=True)
