@@ -40,8 +40,6 @@ os.environ["PINSTRESS_CACHE"] = ""  # tests solve anew, in other processes too
 
 resource_tracker.ensure_running()  # the tracker of spawned processes, which stays to the end
 
-gc.disable()  # until all is collected, which took twice as long with it
-
 ROOT = Path(__file__).parent.parent
 INCH = 0.0254
 LBF = 0.45359237 * 9.80665
@@ -75,8 +73,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             items[:] = [item for item in items if item not in left_out]
 
 
-def pytest_collection_finish() -> None:
-    """What is imported by now stays, and is not looked through again and again."""
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Nothing that is imported meanwhile is garbage, and to look for some took half of the time."""
+    gc.disable()
+    yield
     gc.freeze()
     gc.enable()
 
