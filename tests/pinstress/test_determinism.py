@@ -30,7 +30,7 @@ fillet = 4
 material = "steel"
 clamp = ["start"]
 profile = [{ length = 10, diameter = 30 }, { length = 20, diameter = 30, connection = "B" }]
-hole = [{ z = 15, diameter = 15, angle = "20 deg" }]
+hole = [{ z = 15, diameter = 20, angle = "20 deg" }]
 [pin.C]
 material = "steel"
 profile = [{ length = 10, diameter = 10, connection = "C1" },

@@ -193,9 +193,9 @@ forces = { ONE = [20000, 0], OTHER = [20000, 0] }
 @pytest.mark.slow
 def test_the_hole_about_a_bushing_that_a_loose_joint_loads_more_depends() -> None:
     """Its stress grows by half with the clearance, and was met as of the joint as given."""
-    ring = "[lug_defaults.bushing]\nthickness = 2\nmaterial = 'steel'\ninterference = 0.01\n"
-    swaps = SHANK, ("[lug_defaults.shank]", f"{ring}[lug_defaults.shank]")
-    tight, loose, ranged = (solved(x, 15e3, *swaps).pins[0].joint for x in (TIGHT, LOOSE, RANGED))
+    ring = "bushing = { thickness = 2, material = 'steel', interference = 0.01 }"
+    eye = "[lug_defaults]", f"[pin.P.lug.EYE]\n{ring}\nshank = {{ width = 50 }}\n[lug_defaults]"
+    tight, loose, ranged = (solved(x, 15e3, eye).pins[0].joint for x in (TIGHT, LOOSE, RANGED))
     holes = [
         max((x for x in joint.lugs if x.wall == "hole"), key=lambda x: x.max_von_mises)
         for joint in (tight, loose, ranged)

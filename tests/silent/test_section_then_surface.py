@@ -13,6 +13,7 @@ from pinstress.analysis.results import RunResults
 from pinstress.study.reading.in_python import study_from
 from reports.data.row import PinResult
 from tests.silent.test_checks_over_the_joint import SHANK, TEXT, TIGHT, solved
+from tests.support.each import sampled
 from tests.support.pins.remembered import remembered
 
 SHORT = """profile = [
@@ -60,31 +61,31 @@ def of(clearance: str, required: float = 1.0) -> RunResults:
 
 
 @pytest.mark.slow
-def test_the_surface_has_its_own_error_and_growth_in_a_loose_joint() -> None:
+@pytest.mark.parametrize("end", sampled([0.1, 0.3], every=2))
+def test_the_surface_has_its_own_error_and_growth_in_a_loose_joint(end: float) -> None:
     """Beside a joint that is loose. The error was that of the section, which has hardly any, so
     that a factor between the two was safe; and fatigue, which reads the surface, grew as the row.
     """
-    for end in (0.1, 0.3):
-        (loose,) = of(f"clearance = {end}").pins
-        (ranged,) = of(ALONE.replace("END", f"{end}")).pins
-        assert loose.places
-        assert loose.places.governs == "surface"
-        at_least = loose.maximum.lower_end
-        assert ranged.places
-        assert ranged.places.governs == "section"
-        assert ranged.maximum.upper_end < 1.003 * ranged.maximum.lower_end
-        assert ranged.joint
-        over, surface = ranged.joint.range, ranged.places.surface
-        assert over
-        assert over.across < 1.01
-        reached = over.max_von_mises[1]
-        assert reached > at_least
-        # What the cells leave open of the surface as described is open of it in the loose joint.
-        assert reached > 1.04 * over.variations[0].max_von_mises
-        with_error = surface.max_von_mises + (surface.error_estimate or 0.0)
-        assert ranged.surface_growth * with_error > at_least
-        (between,) = of(ALONE.replace("END", f"{end}"), 700.0 / (0.99 * reached)).pins
-        assert between.outcome == DEPENDS
+    (loose,) = of(f"clearance = {end}").pins
+    (ranged,) = of(ALONE.replace("END", f"{end}")).pins
+    assert loose.places
+    assert loose.places.governs == "surface"
+    at_least = loose.maximum.lower_end
+    assert ranged.places
+    assert ranged.places.governs == "section"
+    assert ranged.maximum.upper_end < 1.003 * ranged.maximum.lower_end
+    assert ranged.joint
+    over, surface = ranged.joint.range, ranged.places.surface
+    assert over
+    assert over.across < 1.01
+    reached = over.max_von_mises[1]
+    assert reached > at_least
+    # What the cells leave open of the surface as described is open of it in the loose joint.
+    assert reached > 1.04 * over.variations[0].max_von_mises
+    with_error = surface.max_von_mises + (surface.error_estimate or 0.0)
+    assert ranged.surface_growth * with_error > at_least
+    (between,) = of(ALONE.replace("END", f"{end}"), 700.0 / (0.99 * reached)).pins
+    assert between.outcome == DEPENDS
 
 
 def test_damage_grows_as_the_surface() -> None:

@@ -107,7 +107,7 @@ def test_the_error_holds_the_solids_maximum(steel: Material, gap: float, across:
     force = 1000.0 * np.array([[[-0.5, 0, 0], [1.0, 0, 0], [-0.5, 0, 0]]])
     loads = PinLoads("case", ("A", "B", "C"), force)
     found = beam_estimate(beam_stress(pin, steel, acting(loads)), loads)
-    (solid,) = solve_pin(pin, steel, (), (loads,), Requirement(0.05, model="solid", meshes=3))
+    (solid,) = solve_pin(pin, steel, (), (loads,), Requirement(0.05, model="solid", meshes=2))
     assert solid.peak.max_von_mises is not None
     assert solid.peak.error_estimate is not None
     assert found.error is not None

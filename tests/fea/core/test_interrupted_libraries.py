@@ -11,6 +11,7 @@ import time
 import pytest
 
 from tests.conftest import ROOT
+from tests.support.each import sampled
 from tests.support.programs.process_group import started
 
 METIS = """
@@ -61,9 +62,14 @@ except KeyboardInterrupt:
 """
 
 
+ENDED = [
+    *((METIS, signal.SIGINT), (GMSH, signal.SIGINT), (GMSH, signal.SIGTERM)),
+    *((METIS, signal.SIGTERM), (METIS, signal.SIGHUP), (GMSH, signal.SIGHUP)),
+]
+
+
 @pytest.mark.linux
-@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize("library", [METIS, GMSH], ids=["METIS", "gmsh"])
+@pytest.mark.parametrize(("library", "ending"), sampled(ENDED, every=2))
 def test_a_signal_within_a_library_is_an_interrupt(library: str, ending: signal.Signals) -> None:
     with started(
         [sys.executable, "-c", library + INTERRUPTED],

@@ -61,9 +61,9 @@ def as_script(folder: Path) -> tuple[str, ...]:
 
 @pytest.mark.slow
 def test_a_run_imports_nothing_from_the_current_folder(folder: Path) -> None:
-    done = run(folder, ("-m", "pinstress"), "run", "study.toml", "--out", "out", "--plots")
-    assert (done.returncode, "No pictures" in done.stderr) == (0, False), done.stderr
-    assert list((folder / "out" / "plots").glob("*.svg"))
+    """Plots, which other processes draw, are those of the next test."""
+    done = run(folder, ("-m", "pinstress"), "run", "study.toml", "--out", "out")
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.slow
@@ -71,6 +71,7 @@ def test_nor_does_the_installed_program_or_any_process_that_it_starts(folder: Pa
     script = as_script(folder)
     done = run(folder, script, "run", "study.toml", "--out", "out", "--plots")
     assert (done.returncode, "No pictures" in done.stderr) == (0, False), done.stderr
+    assert list((folder / "out" / "plots").glob("*.svg"))
 
 
 @pytest.mark.slow

@@ -269,11 +269,12 @@ def test_auto_takes_foundations_where_they_show_that_a_pin_is_safe() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("required", "edges"), sampled([(3.0, 3e-4), (10.0, 3e-4), (1.5, 0.0)], every=2)
+    ("required", "edges"), sampled([(2.6, 3e-4), (10.0, 3e-4), (1.5, 0.0)], every=2)
 )
 def test_auto_takes_contact_for_what_is_close_or_fails_or_is_singular(
     required: float, edges: float
 ) -> None:
+    """Foundations say 176 to 424 MPa; a factor of 2.6 permits 385 MPa."""
     assert decided(required, edges).peak.model == "harmonic"
 
 
