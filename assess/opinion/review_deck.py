@@ -146,12 +146,14 @@ def _joint_in_units(deck: JointDeck, units: DeckUnits) -> JointDeck:
         lining = one.lining and (one.lining[0] / units.length, _in_units(one.lining[1], units))
         return replace(one, mesh=mesh, material=_in_units(one.material, units), lining=lining)
 
+    moment = units.force * units.length
     eyes = tuple(
         replace(
             eye,
             part=part(eye.part),
             force=eye.force / units.force,
-            tilt=eye.tilt / (units.force * units.length),
+            tilt=eye.tilt / moment,
+            couple=(eye.couple[0] / moment, eye.couple[1] / moment),
         )
         for eye in deck.eyes
     )

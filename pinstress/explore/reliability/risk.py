@@ -100,6 +100,8 @@ class Sample:
     def loose(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the probability that the pin comes loose."""
         margin = np.where(column.loose(self.answers), -1.0, 1.0)
+        failed = np.isnan(column.of(self.answers)[0])  # a design that failed may come loose or not
+        margin[failed & (margin > 0.0)] = np.nan
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:

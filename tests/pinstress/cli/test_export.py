@@ -385,3 +385,25 @@ def test_calculix_shares_a_force_between_lugs_of_a_structure(tmp_path: Path) -> 
         assert total == pytest.approx(force, rel=0.03), lug
     moment = largest_moment(theirs, seated.whole)
     assert moment == pytest.approx(row.joint.bending_moment, rel=MAX_MOMENT_DIFFERENCE)
+
+
+@pytest.mark.slow
+def test_couples_of_links_are_in_the_units_of_the_deck(tmp_path: Path) -> None:
+    """They were in N m whatever the units: 20 N m are 20,000 N mm and 177 lbf in."""
+    couple = 'other = ["-10000 N", "0 N"] }\nmoments = { one = ["20 N m", "0 N m"] }'
+    forces = (
+        ("other = [-10000, 0] }", couple),
+        ("one = [10000, 0]", 'one = ["10000 N", "0 N"]'),
+        ("tolerance = 0.05", "tolerance = 0.2"),
+    )
+    lengths = [(f"= {x}", f'= "{x} mm"') for x in ("5,", "20", "0.6", "50")]
+    study = SINGLE_SHEAR.replace("edge_radius = 0.3", 'edge_radius = "0.3 mm"')
+    for old, new in (*forces, *((a, b.replace(', mm"', ' mm",')) for a, b in lengths)):
+        study = study.replace(old, new)
+    for units, size in (("mm-N-s", 20000.0), ("in-lbf-s", 177.015)):
+        (tmp_path / "deck.inp").unlink(missing_ok=True)
+        text = study.replace("mm-N-s", units)
+        assert exported(tmp_path, text, "--deck", "calculix", pin="P", case="pull") == 0
+        loads = (tmp_path / "deck.inp").read_text("ascii").split("*CLOAD\n")[1].split("*")[0]
+        turning = [float(line.split(",")[2]) for line in loads.splitlines() if ", 2, " in line]
+        assert np.abs(turning).max() == pytest.approx(size, rel=1e-5)
