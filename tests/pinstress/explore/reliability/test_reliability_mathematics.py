@@ -14,13 +14,14 @@ from scipy.special import ndtr, ndtri
 from scipy.stats import binom, norm
 
 from benchmarks.runs.reliability import assessed, cases
-from pinstress.explore.reliability.designs import NormalSpace
+from pinstress.explore.reliability.designs import Answers, NormalSpace
 from pinstress.explore.reliability.form import (
     NOISY_CLOSENESS,
     design_point,
     distinct,
     form_quantile,
 )
+from pinstress.explore.reliability.risk import RiskColumn, Sample
 from pinstress.explore.reliability.sampling import (
     Draws,
     importance_draws,
@@ -28,6 +29,7 @@ from pinstress.explore.reliability.sampling import (
     probability,
     quantile,
 )
+from pinstress.study.schema.vary import ReliabilityTable
 
 Array = NDArray[np.float64]
 
@@ -329,3 +331,16 @@ def test_the_exact_cases_of_the_benchmark() -> None:
         failing = int((case.used(case.space.physical(u)) > 1.0).sum())
         low, high = (binom.ppf(p, len(u), case.probability) for p in (1e-4, 1.0 - 1e-4))
         assert low <= failing <= high, case.name
+
+
+def test_designs_that_failed_may_come_loose_or_not() -> None:
+    """Of four pins one comes loose and one has no result: at most two come loose."""
+    used = np.array([[0.5], [0.5], [0.5], [np.nan]])
+    no, loose = np.zeros((4, 1), dtype=bool), np.array([[True], [False], [False], [False]])
+    sample = Sample(plain_draws(4, 1, 0), Answers(used, 0.0 * used, used, no, loose))
+    settings = ReliabilityTable()
+    for row in (0, None):
+        estimate = sample.loose(settings, RiskColumn(row))
+        beyond = 0.5 * (1.0 - settings.confidence)
+        assert (estimate.value, estimate.unknown) == (pytest.approx(1.0 / 3.0), 1)
+        assert binom.cdf(2, 4, estimate.high) == pytest.approx(beyond)
