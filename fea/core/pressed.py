@@ -177,8 +177,7 @@ class PressedArcs:
         """A mask (R, ARC_COUNT) of the arcs of rings at the edge of a lug.
 
         These are all arcs under the rounding, where rings are short and steps of pressure high, and
-        the pressed arcs of the next UNREAD_EDGE_RINGS rings, unless contact has receded from the
-        edge.
+        the pressed arcs of the next UNREAD_EDGE_RINGS rings.
         """
         on, rings = self.on[instant], self.rings
         out = np.tile(rings.edge[:, None], on.shape[1])
@@ -187,7 +186,7 @@ class PressedArcs:
             for side in (rings_of_lug, rings_of_lug[::-1]):
                 rounded = int(np.cumprod(rings.edge[side]).sum())
                 near = side[: rounded + UNREAD_EDGE_RINGS]
-                out[near] |= on[near] & on[side[: rounded + 1]].any(axis=0)
+                out[near] |= on[near]
         return out
 
     def widened(self, arcs: Mask) -> Mask:

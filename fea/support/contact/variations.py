@@ -139,12 +139,11 @@ def compare(
     ]
     as_given: list[Mapping[Cells, AsGiven]] = []
     stress, out = at_places(model, requirement, every), []
-    for contact, both in zip(at, exact, strict=True):
+    for contact, (own, large) in zip(at, exact, strict=True):
         first, twice, roughest = (stress.pop(0) for _ in range(3))
         arc = contact.half_angle(model.bands, model.tail)
         cells = by_cells(first, roughest, model.cells.rings, arc * model.cells.highest)
         out.append(ResolutionComparison(first, cells, contact.loads.links, (), half_angle=arc))
-        own, large = both
         as_given.append({"own": (first, cells, own), "large": (twice, cells, large)})
     which = (True,) * len(at) if vary is None else vary(out)
     if any(which):
@@ -164,17 +163,14 @@ def _over_joint(
     """The variations of each contact, and a remark on those that are not included.
 
     known: existing patterns of pressures.
-    as_given: for each contact, the joint as given, on the cells on which it was solved.
+    as_given: for each contact, the joint as given on both kinds of cells.
     vary: for each contact, whether its joint is varied.
     """
     changes = tuple(joint_variations(model.whole, model.lugs)) if any(vary) else ()
-    tried: tuple[Cells, ...] = ("large", "own")
-    if model.cells.rings < USUAL_RING_COUNT:  # even larger cells serve only to show the error
-        tried = "own", "large"
-    known_on = as_given[0] if as_given else {}
-    joints = JointChanges(
-        model, at, requirement, as_given, tuple(x for x in tried if x in known_on)
-    )
+    # Cells larger than rough ones serve only to show the error.
+    rough = model.cells.rings < USUAL_RING_COUNT
+    cells: tuple[Cells, ...] = ("own", "large") if rough else ("large", "own")
+    joints = JointChanges(model, at, requirement, as_given, cells)
     changed, known = joints.by([changes if varied else () for varied in vary], known)
     by_friction = _by_friction(model, requirement, known, at, vary)
     out = []
@@ -233,21 +229,21 @@ def uncompared(
 ) -> tuple[ResolutionComparison, ...]:
     """Return the contacts, each at one instant, without a comparison of cells.
 
-    Their joints are varied on the model's own cells if the requirement asks for it.
+    Their joints are varied if the requirement asks for it.
     known: patterns that reproduce all pressures.
     """
     if not requirement.varied:
         return tuple(ResolutionComparison(NOWHERE, NOWHERE, x.loads.links, ()) for x in at)
-    own = [PressedJoint(model.waves(x.contact), list(x.contact)) for x in at]
-    loads = [[loads_of(model, known, *both)] for both in zip(own, at, strict=True)]
+    both = _on_both_cells(model, at)
+    loads = [[loads_of(model, known, x, one) for x in of] for one, of in zip(at, both, strict=True)]
     stress = at_places(model, requirement, loads)
-    as_given: list[Mapping[Cells, AsGiven]]
-    as_given = [{"own": (x, NOWHERE, joint)} for x, joint in zip(stress, own, strict=True)]
+    as_given: list[Mapping[Cells, AsGiven]] = [
+        {"own": (stress[2 * k], NOWHERE, own), "large": (stress[2 * k + 1], NOWHERE, large)}
+        for k, (own, large) in enumerate(both)
+    ]
     over = _over_joint(model, at, requirement, known, as_given, (True,) * len(at))
-    return tuple(
-        ResolutionComparison(like, NOWHERE, x.loads.links, *varied)
-        for x, like, varied in zip(at, stress, over, strict=True)
-    )
+    every = zip(at, stress[::2], over, strict=True)
+    return tuple(ResolutionComparison(x, NOWHERE, one.loads.links, *y) for one, x, y in every)
 
 
 def _on_both_cells(
