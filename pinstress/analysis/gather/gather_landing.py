@@ -79,20 +79,20 @@ def sharing_range(task: Task, solution: Solution) -> SharingRange | None:
     over, peak = task.shared.get(solution.peak.case), solution.peak.max_von_mises
     if over is None or solution.answer is None or peak is None:
         return None
-    found = _stresses(task, solution, over.loads)
-    stress, top = (_largest_by(over.what, x) for x in (found.maxima, found.upper_ends))
+    stresses = _stresses(task, solution, over.loads)
+    stress, top = (_largest_by(over.what, x) for x in (stresses.maxima, stresses.upper_ends))
     low, high = min(stress, key=stress.__getitem__), max(top, key=top.__getitem__)
     ends = min(peak, stress[low]), max(peak, *stress.values())
     range_ = SharingRange(
         ends,
         low if stress[low] < peak else "",
         high if top[high] > solution.peak.upper_end else "",
-        _largest_load(task, solution.peak, over.loads, found.maxima),
+        _largest_load(task, solution.peak, over.loads, stresses.maxima),
         top[high],
     )
-    if found.beneath is None:
+    if stresses.beneath is None:
         return range_
-    deep = _largest_by(over.what, found.beneath)
+    deep = _largest_by(over.what, stresses.beneath)
     deepest = max(deep, key=deep.__getitem__)
     return replace(range_, beneath=(deep[low], deep[deepest]), deepest=deepest)
 
