@@ -13,9 +13,7 @@ from reports.plots.loads.linkage import linkage_plot
 from reports.plots.loads.motion import motion_plots, transmission_plots
 from reports.plots.loads.reactions import bars, reaction_plot
 from reports.plots.spec import Plot
-from reports.plots.strength.fatigue import collective_plot, history_plot
-from reports.plots.strength.landing import landing_plot
-from reports.plots.strength.limit_load import limit_plot
+from reports.plots.strength import collective_plot, history_plot, landing_plot, limit_plot
 from reports.plots.stress.beam_check import beam_plots
 from reports.plots.stress.joint import joint_plot
 from reports.plots.stress.refinement import pin_refinement_plot, refinement_plot

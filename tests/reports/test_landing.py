@@ -11,7 +11,7 @@ import pytest
 from reports.data.mechanics import PublishedValue
 from reports.data.results import Results
 from reports.page.page import write_page
-from reports.plots.strength.landing import landing_plot
+from reports.plots.strength import landing_plot
 from reports.tables.published import published_values_table, write_published
 from reports.tables.strength.landing import landing_table, landing_tables, write_landing
 from tests.support.results.made_up_run import ranged

@@ -12,7 +12,7 @@ from geometry import Pin, Segment
 from geometry.mesh.hexahedra import HexSize, hexahedra, twenty
 from pinbase.records import pack, unpack
 from reports.data.results import Results
-from reports.plots.strength.limit_load import limit_plot
+from reports.plots.strength import limit_plot
 from reports.tables.json_results import to_json
 from reports.tables.strength.limit_load import limit_load_table, limit_word, limits_table
 from reports.vtk.fields import write_flow

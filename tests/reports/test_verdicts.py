@@ -15,7 +15,7 @@ from rich.console import Console
 from fea.core.peak import Verdict
 from reports.data.results import Results
 from reports.format.words import OUTCOME_MEANINGS, VERDICT_MEANINGS, verdict_words
-from reports.plots.strength.landing import landing_plot
+from reports.plots.strength import landing_plot
 from reports.tables.column import Column, Table, read_only
 from reports.tables.json_results import to_json
 from reports.tables.strength.landing import landing_table, write_landing

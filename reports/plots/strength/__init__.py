@@ -1,1 +1,0 @@
-"""Plots of safety factors, fatigue and limit load."""
