@@ -149,6 +149,7 @@ def test_a_sweep(folder: Path) -> None:
             assert "beneath contact" in x["depends_on"]
 
 
+@pytest.mark.long
 def test_its_reliability(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Stress does not depend on strength, so that both probabilities are those of a normal law."""
     out = str(folder / "reliability")

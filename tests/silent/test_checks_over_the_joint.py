@@ -190,6 +190,7 @@ forces = { ONE = [20000, 0], OTHER = [20000, 0] }
     assert found[RANGED]["ONE"].over_joint == 1.0
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_the_hole_about_a_bushing_that_a_loose_joint_loads_more_depends() -> None:
     """Its stress grows by half with the clearance, and was met as of the joint as given."""

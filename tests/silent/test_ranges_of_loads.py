@@ -105,7 +105,7 @@ def test_what_lies_beneath_contact_is_that_under_the_impulse_at_the_end_of_its_r
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("change", [HARDENED, HOLE])
+@pytest.mark.parametrize("change", [HARDENED, pytest.param(HOLE, marks=pytest.mark.long)])
 def test_so_it_is_of_pins_with_a_hardened_surface_and_with_holes(change: tuple[str, str]) -> None:
     """Neither a case of 1 mm, half as deep as where it is read, nor a hole far away changes it."""
     row, at_end = _landed(1.0, change)

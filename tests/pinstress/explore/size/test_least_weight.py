@@ -120,6 +120,7 @@ def test_a_round_bar_in_closed_form(text: str, exact: float, power: float) -> No
     assert confirmed(found)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_bore_grows_to_its_limit() -> None:
     """A tube of a constant ratio of diameters: M / (pi d^3 (1 - 0.8^4) / 32), and lighter."""
