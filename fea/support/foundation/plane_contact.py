@@ -129,6 +129,18 @@ def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
     return np.stack(columns, axis=1)
 
 
+def _terms_with_force(r: float, kappa: float) -> Floats:
+    """The terms of `_powers` for n = 1, and the pair of terms with a resultant, combined so that
+    the displacement is single-valued.
+
+    A wall needs them whose inner and outer surfaces do not each balance.
+    """
+    k, ln = kappa, math.log(r)
+    first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0
+    second = np.array([(k - 1.0) * ln - 1.0, -(k - 1.0) * ln - 1.0, 2.0 / r, 2.0 / r]) / 2.0
+    return np.column_stack([_powers(1, r, k), first - (k - 1.0) / (k + 1.0) * second])
+
+
 def _many(n: int, other: float, material: Material) -> float:
     """The radial displacement of a harmonic n > 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
@@ -143,21 +155,26 @@ def _many(n: int, other: float, material: Material) -> float:
 def _section(hole: float, material: Material) -> float:
     """The displacement of a pin for harmonic 1.
 
-    The pressure pushes along -x, and a uniform body force along x holds the pin.
+    The pressure pushes along -x, and a uniform body force along x holds the pin. In a tube the
+    particular solution leaves a resultant on the bore, which the terms with a force take away.
     """
     (lam, mu), kappa, solid = material.lame, 3.0 - 4.0 * material.poisson_ratio, hole == 0.0
     alpha = -3.0 / (8.0 * (lam + 2.0 * mu) * (1.0 - hole**2))
     beta = -alpha / 3.0
     stress = np.array([2.0 * alpha * (lam + 2.0 * mu) + lam * (alpha + beta), mu * (beta - alpha)])
+
+    def terms(r: float) -> Floats:
+        return _powers(1, r, kappa, solid) if solid else _terms_with_force(r, kappa)
+
     ends = (1.0,) if solid else (1.0, hole)
-    rows = np.vstack([_powers(1, r, kappa, solid)[2:] for r in ends])
+    rows = np.vstack([terms(r)[2:] for r in ends])
     load = np.concatenate([-stress * r for r in ends])
     load[0] -= 1.0
     constants = np.linalg.lstsq(rows, load)[0]  # equilibrium makes one row redundant
 
     def moved(r: float) -> Floats:
         particular = np.array([alpha, beta]) * r**2
-        return np.asarray(_powers(1, r, kappa, solid)[:2] @ constants / (2.0 * mu) + particular)
+        return np.asarray(terms(r)[:2] @ constants / (2.0 * mu) + particular)
 
     at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS_POINTS
     along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])
@@ -168,18 +185,8 @@ def _section(hole: float, material: Material) -> float:
 def _eye(wide: float, material: Material) -> float:
     """The displacement of a lug for harmonic 1."""
     kappa, mu = 3.0 - 4.0 * material.poisson_ratio, material.lame[1]
-
-    def terms(r: float) -> Floats:
-        """The terms of `_powers`, and the pair of terms with a resultant, combined so that the
-        displacement is single-valued.
-        """
-        k, ln = kappa, math.log(r)
-        first = np.array([(k + 1.0) * ln - 1.0, -(k + 1.0) * ln - 1.0, 4.0 / r, 0.0]) / 2.0
-        second = np.array([(k - 1.0) * ln - 1.0, -(k - 1.0) * ln - 1.0, 2.0 / r, 2.0 / r]) / 2.0
-        return np.column_stack([_powers(1, r, k), first - (k - 1.0) / (k + 1.0) * second])
-
     held = 0.5 / wide  # of constant direction: s_rr = -held cos, s_rt = held sin
-    rows = np.vstack([terms(1.0)[2:], terms(wide)[2:]])
+    rows = np.vstack([_terms_with_force(r, kappa)[2:] for r in (1.0, wide)])
     constants = np.linalg.lstsq(rows, np.array([-1.0, 0.0, -held, held]))[0]
-    bore, outside = (terms(r)[:2] @ constants / (2.0 * mu) for r in (1.0, wide))
+    bore, outside = (_terms_with_force(r, kappa)[:2] @ constants / (2.0 * mu) for r in (1.0, wide))
     return float(bore[0] - 0.5 * (outside[0] - outside[1]))
