@@ -29,6 +29,7 @@ from pinstress import load_study
 from pinstress.study.model.mechanism.linkage import linkage
 from pinstress.study.reading.file import Study
 from tests import seconds
+from tests.support.near import scaled
 from tests.support.programs.command_line import pinstress
 from tests.support.programs.once import Shipped, once
 from tests.support.programs.process_group import children
@@ -37,6 +38,8 @@ from tests.support.programs.terminal import on_terminal
 
 os.environ.pop("COLUMNS", None)  # set in the workers of xdist, but seldom by users
 os.environ["PINSTRESS_CACHE"] = ""  # tests solve anew, in other processes too
+
+pytest.approx = scaled  # type: ignore[assignment]  # as all tests call it
 
 resource_tracker.ensure_running()  # the tracker of spawned processes, which stays to the end
 

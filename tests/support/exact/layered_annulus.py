@@ -39,7 +39,8 @@ def widening(rings: list[Ring], n: int, strain: bool) -> float:
     for k, (inside, _) in enumerate(pairwise(rings)):
         both = [field(k, inside[1]), -field(k + 1, inside[1])]
         system[4 + 4 * k : 8 + 4 * k, 4 * k : 4 * k + 8] = np.hstack(both)
-    scale = np.maximum(np.abs(system).max(axis=0), 1e-300)
+    largest = np.abs(system).max(axis=0)
+    scale = np.where(largest > 1e-12, largest, 1.0)  # the rigid motion of one ring is round-off
     found = np.linalg.lstsq(system / scale, right, rcond=1e-14)[0] / scale
     moved = field(0, a)[0] @ found[:4]
     if n == 1:

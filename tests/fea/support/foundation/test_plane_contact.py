@@ -20,6 +20,7 @@ from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
 from geometry.mesh.section_mesh import SectionSize, meridian_mesh
 from geometry.shape.rings import annulus
+from tests.support.exact.layered_annulus import widening
 
 STEEL = Material("steel", 210e9, 0.3)
 EVEN = Material("no lateral strain", 210e9, 0.0, density=1.0)  # plane in any length
@@ -32,6 +33,13 @@ def test_a_lug_is_that_of_finite_elements() -> None:
         annulus(TUBE, "A", 0.05, np.array([0.0, 0.02])), Lug("A", 0.05, EVEN), 20.0
     ).flexibility(6)[:, 0, 0]
     assert lug_harmonics(0.01, 0.025, EVEN)[:7] == pytest.approx(found, rel=1e-3)
+
+
+def test_a_lug_that_contracts_is_the_exact_annulus() -> None:
+    """In displacements in place of Michell's stresses, for any Poisson's ratio."""
+    for material in (STEEL, Material("rubbery", 1e9, 0.45)):
+        exact = [widening([(0.01, 0.025, material)], n, strain=True) for n in range(7)]
+        assert lug_harmonics(0.01, 0.025, material)[:7] == pytest.approx(exact, rel=1e-9)
 
 
 @pytest.mark.parametrize(("pin", "bore"), [(TUBE, 0.005), (SOLID, 0.0)])
