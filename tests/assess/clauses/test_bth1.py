@@ -14,11 +14,8 @@ from assess.checks import margins_of
 from assess.clauses.bth1 import (
     bearing_strength,
     effective_width,
-    fracture_strength,
     pin_to_hole,
     shear_area,
-    shear_strength,
-    tension_strength,
 )
 from assess.clauses.eye import PlateEye
 from assess.codes import Code
@@ -31,18 +28,13 @@ from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
-FY, FU, ND = 36 * KSI, 58 * KSI, 2.0
-STRENGTHS = tension_strength, fracture_strength, shear_strength, bearing_strength
+FY, FU = 36 * KSI, 58 * KSI
 
 
 def plate(t: float, a: float, be: float, dp: float, dh: float, *, square: bool = False) -> PlateEye:
     """A plate by its dimensions in inches."""
     width, end = 2.0 * be + dh, a + dh / 2.0
     return PlateEye(width * IN, dh * IN, dp * IN, t * IN, end=end * IN, square=square)
-
-
-def kips(eye: PlateEye, N_d: float = ND) -> list[float]:
-    return [strength(eye, FY, FU, N_d).result.value / KIP for strength in STRENGTHS]
 
 
 B7 = plate(0.75, 3.3125, 1.66, 1.375, 1.6875)

@@ -4,6 +4,8 @@ out; and what it says would pass does.
 
 from __future__ import annotations
 
+import math
+import re
 from dataclasses import replace
 
 import pytest
@@ -11,6 +13,7 @@ import pytest
 from assess.checks import margins_of
 from assess.margin import Margin
 from assess.situation import Situation
+from assess.work import Work
 from fea.support.lugs.lug import Lug
 from geometry import Pin
 from tests.assess.clauses.test_affdl import joint_of_table
@@ -44,6 +47,39 @@ def test_work_and_what_would_pass(of: Situation) -> None:
     assert not {m.method for m in margins if not m.omits}
     without = {m.method for m in margins if m.passing is None}
     assert without <= {"AISC shear rupture"}  # whose planes a round head of any width has
+
+
+PYTHON = {"×": "*", "−": "-", "√3": "sqrt(3)", "√": "sqrt", "²": "**2", "^": "**", "π": "pi"}
+
+
+def evaluated(shown: Work) -> float:
+    """What a formula gives as it is printed; of one "with" others, what comes before them."""
+    text = shown.formula.split(" with ")[0]
+    for sign, python in PYTHON.items():
+        text = text.replace(sign, python)
+    numbers = {q.symbol: q.value for q in shown.quantities}
+    text = re.sub(r"\{(.+?)\}", lambda m: f"({numbers[m[1]]!r})", text)
+    names = {"sqrt": math.sqrt, "pi": math.pi, "min": min, "max": max}
+    return float(eval(text, {"__builtins__": {}}, names))
+
+
+@each("of", [clevis(), joint_of_table(), *(lug_at(x) for x in (0.0, 45.0, 90.0))])
+def test_what_is_printed_gives_the_result(of: Situation) -> None:
+    """Each formula with its numbers; the last of a check is what it demands or allows."""
+    for m in made(of):
+        for shown in m.work:
+            assert evaluated(shown) == pytest.approx(shown.result.value, rel=1e-9), m.method
+        last = m.work[-1].result.value
+        assert any(x == pytest.approx(last, rel=1e-9) for x in (m.demand, m.allowable)), m.method
+
+
+def test_the_forces_that_are_printed_are_those_of_statics() -> None:
+    """Half of 20 kN goes to each side; the moments are those of Shigley's beam."""
+    printed = {m.method: {q.symbol: q.value for q in m.work[0].quantities} for m in made(clevis())}
+    assert printed["single shear, mean"]["V"] == pytest.approx(10e3)
+    assert printed["single shear, at the neutral axis"]["V"] == pytest.approx(10e3)
+    assert printed["double shear, mean"]["F"] == pytest.approx(20e3)
+    assert printed["bending"]["M"] == pytest.approx(10e3 * (0.005 + 0.001 + 0.005))
 
 
 @each(
