@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -57,6 +58,9 @@ def test_what_gives_no_curve_is_said() -> None:
     flat = Material("flat", 2e11, 0.3, None, 4e8, 4e8)
     with raises(ArgumentError, "out-of-range", "above the yield strength"):
         trapezoid_stress(flat, 0.1)
+    for lacking in ("yield_strength", "ultimate_strength"):
+        with raises(ArgumentError, "out-of-range", "above the yield strength"):
+            hardening_exponent(replace(ALUMINIUM, **{lacking: None}), 0.12)
     with raises(ArgumentError, "out-of-range", "beyond elastic"):
         trapezoid_stress(ALUMINIUM, 0.006)
     assert np.isfinite(trapezoid_stress(ALUMINIUM, 0.02))

@@ -48,7 +48,7 @@ def test_the_moment_that_an_axial_force_leaves(section: Circle, depth: float) ->
     assert used(section, 0.49, m, n, 0.0) == pytest.approx(1.0, rel=1e-3)
 
 
-@each("v", [0.6, 0.75, 0.9])
+@each("v", [0.52, 0.6, 0.75, 0.9])
 def test_shear_above_half_lowers_the_yield_strength(v: float) -> None:
     """6.2.8: at v = 0.75 rho is 0.25, and three quarters of the plastic moment are left."""
     rho = (2.0 * v - 1.0) ** 2
@@ -61,6 +61,14 @@ def test_shear_and_torsion_alone() -> None:
     assert used(TUBE, 0.8, 0.0, 0.0, 0.0) == pytest.approx(0.8)
     assert used(TUBE, 0.3, 0.0, 0.0, 0.4) == pytest.approx(0.7)
     assert used(TUBE, 0.0, 0.0, 0.0, 0.0) == 0.0
+
+
+@each("part", [1.0, 1e-3, 1e-9])
+def test_a_use_is_proportional_to_the_load(part: float) -> None:
+    """Also to newton metres and newtons that are fractions of one."""
+    for v, m, n in ((0.0, 0.5, 0.0), (0.0, 0.0, 0.5), (0.3, 0.4, 0.2), (0.1, 0.4, 0.2)):
+        whole = used(SOLID, v, m, n, 0.0)
+        assert used(SOLID, part * v, part * m, part * n, 0.0) == pytest.approx(part * whole)
 
 
 def in_civil(along: float, torque: float = 0.0, bore: float = 0.0) -> Situation:
@@ -90,6 +98,24 @@ def test_margins_on_paper() -> None:
     assert pulled.work[-1].result.value == pytest.approx(pulled.demand)
     assert pulled.passing is not None
     assert pulled.passing.symbol == "diameter"
+
+
+def test_a_partial_factor_divides_the_strength() -> None:
+    """A pin bent, pulled and twisted at gamma 1.25 is one at 1 under 1.25 times the loads."""
+    s = in_civil(15e3, torque=20.0)
+    more = replace(s.loads, forces=1.25 * s.loads.forces, moments=1.25 * s.loads.moments)
+    lower = section_margin(replace(s, partial=replace(s.partial, M0=1.25)))
+    assert lower.used == pytest.approx(section_margin(replace(s, loads=more)).used)
+
+
+@each("bore", [0.0, 0.008])
+def test_the_diameter_that_would_pass_does(bore: float) -> None:
+    """With the bore as it is."""
+    found = section_margin(in_civil(15e3, bore=bore)).passing
+    assert found is not None
+    s = in_civil(15e3, bore=bore)
+    wider = Pin("P", tuple(replace(x, diameter=found.value) for x in s.pin.segments))
+    assert section_margin(replace(s, profile=wider)).used == pytest.approx(1.0, rel=1e-5)
 
 
 def test_torsion_counts_as_shear() -> None:

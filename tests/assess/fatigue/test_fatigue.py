@@ -3,15 +3,16 @@
 import math
 
 import numpy as np
+import pandas
 import pytest
 
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
 from assess.fatigue.critical_plane import findley_k, worst_plane
 from assess.fatigue.critical_points import signed_von_mises
-from assess.fatigue.fkm import FkmMaterial, p_ram_life
+from assess.fatigue.fkm import FkmMaterial, _parameters, _repetitions, p_ram_life
 from assess.fatigue.flight import Flight, case_by_case, flight, rainflow, turning_points
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
-from assess.fatigue.sn_curve import MeanStress, SnCurve
+from assess.fatigue.sn_curve import SOFTENED_KNEE_RATIO, MeanStress, SnCurve
 from pinbase.arrays import Floats
 from pinbase.errors import ArgumentError
 from tests.support.each import each
@@ -151,6 +152,45 @@ def test_below_the_knee_there_is_no_damage_without_a_slope() -> None:
     haibach = FatigueMaterial(SnCurve((300e6, 1e6), 5.0, 9.0))
     found = _assessed(history, Spectrum({"pull": 1.0}), haibach)
     assert found.life == pytest.approx(1e6 * (300.0 / 250.0) ** 9)
+
+
+def test_a_softened_knee_goes_on_above_it_alone() -> None:
+    """Its life is that of the slope above, down to a part of the knee, and the curve's elsewhere;
+    no cycles do no damage.
+    """
+    life = SnCurve((300e6, 1e6), 5.0, 9.0).life()
+    amplitude = 300e6 * np.array([1.2, 0.99, 0.9 * SOFTENED_KNEE_RATIO])
+    ratio = amplitude / 300e6
+    expected = 1e-6 * np.array([ratio[0] ** 5, ratio[1] ** 5, ratio[2] ** 9])
+    assert life.softer(amplitude) == pytest.approx(expected, rel=1e-9)
+    assert CURVE.damage(np.zeros(0)) == 0.0
+
+
+@each("ratio", [1.5, 2.0])
+def test_a_third_of_the_sensitivity_holds_in_high_tension(ratio: float) -> None:
+    """FKM: above R = 0 the slope of Haigh's line is M / 3; both lines meet there."""
+    M, amplitude = 0.3, 100e6
+    at_zero = amplitude * (1.0 + M / 3.0 * ratio) / (1.0 + M / 3.0)
+    curve = SnCurve((300e6, 1e6), 5.0, rule="fkm", parameter=M)
+    found = curve.equivalent(np.array([amplitude]), np.array([ratio * amplitude]))
+    assert found == pytest.approx([at_zero * (1.0 + M)])
+
+
+def test_a_sequence_that_breaks_within_its_first_run() -> None:
+    """Equation 2.6-90: damage of 4 in the first run is a quarter of it; of 0.4 and then 0.3 per
+    run, two more runs.
+    """
+    cycles = pandas.DataFrame({"run_index": [1, 1, 2]})
+    assert _repetitions(cycles, np.array([3.0, 1.0, 1.0])) == pytest.approx(0.25)
+    assert _repetitions(cycles, np.array([0.1, 0.3, 0.3])) == pytest.approx(3.0)
+    assert _repetitions(cycles, np.array([0.1, 0.3, 0.0])) == math.inf
+
+
+def test_without_a_notch_there_is_no_support() -> None:
+    """The area of the guideline's specimen, and no gradient."""
+    plain = _parameters(FkmMaterial("Steel", 600e6, 1e-4, 2.0))
+    assert plain["A_sigma"] == pytest.approx(plain["A_ref"])
+    assert plain["G"] == 0.0
 
 
 def test_scatter_of_lives() -> None:

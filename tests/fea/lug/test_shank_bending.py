@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,3 +54,19 @@ def test_it_turns_with_the_shank() -> None:
     straight = bent(OUTLINE, load(0.0, (-1e6, 2e5)), angles)
     turned = bent(OUTLINE, load(0.7, (-1e6, 2e5), shank=0.7), angles)
     assert turned == pytest.approx(straight)
+
+
+def test_what_is_added_is_proportional_to_the_load() -> None:
+    """A force of millinewtons as of meganewtons."""
+    angles = np.radians([82.0, 100.0])
+    small = bent(OUTLINE, load(0.0, (-1e-3, 0.0)), angles)
+    assert 1e9 * small == pytest.approx(bent(OUTLINE, load(0.0, (-1e6, 0.0)), angles))
+
+
+def test_a_couple_without_a_force_pulls_no_shank() -> None:
+    """Which lug is pulled decides who carries the couple; here the eye as a body has it all."""
+    given = load(0.0, (-1e6, 0.0))
+    even = given.pressure - given.pressure.mean(axis=2, keepdims=True)
+    alone = replace(given, force=np.zeros((1, 2)), pressure=even)
+    assert alone.couple(RADIUS) == pytest.approx(given.couple(RADIUS))
+    assert not bent(OUTLINE, alone, np.radians([82.0, 90.0])).any()

@@ -30,6 +30,7 @@ from loads.landing import (
 )
 from loads.landing.drop import fall
 from tests.support.each import each
+from tests.support.errors import raises
 
 G = 9.80665
 GAS = GasSpring(8e5, 0.003, 0.008, 1.2, 1.01e5)
@@ -215,6 +216,21 @@ def test_what_cannot_be_is_refused(make: object, code: str) -> None:
     with pytest.raises(ArgumentError) as caught:
         make()  # type: ignore[operator]
     assert caught.value.code == code
+
+
+def test_a_gas_allows_the_stroke_that_is_named() -> None:
+    """0.98 x 3 l / 80 cm^2 = 367.5 mm."""
+    assert Strut(GAS, 0.3675)
+    with raises(ArgumentError, "stroke-exceeds-gas", "0.00304 m^3", "0.003 m^3", "0.3675 m"):
+        Strut(GAS, 0.38)
+    (plain,) = GasSpring(10.0, 0.003, 0.008, 1.0).force(np.array([0.1875]))  # no ambient pressure
+    assert plain == pytest.approx(2.0 * 10.0 * 0.008)
+
+
+def test_beyond_its_table_a_tyre_has_the_force_of_the_last_row() -> None:
+    table = TableTyre((0.0, 0.02, 0.04), (0.0, 4e3, 9e3))
+    assert table.max_deflection == 0.04
+    assert table.force(np.array([-0.01, 0.02, 0.04, 0.06])) == pytest.approx([0.0, 4e3, 9e3, 9e3])
 
 
 def test_a_leg_that_is_too_weak_is_named() -> None:
