@@ -185,6 +185,24 @@ def test_a_redundant_bar_is_refused_by_name_or_shares_by_its_stiffness() -> None
         assert force(solved, "BD at B") == near(k * each, -k * each)
 
 
+def test_two_redundant_bars_share_each_in_its_storey() -> None:
+    """One panel upon another, pushed at the top: the shear in both is P, so that the diagonals of
+    each carry P sqrt(2) between them, in the ratio of their own stiffnesses.
+    """
+    nodes = {"A": (0.0, 0.0), "B": (1.0, 0.0), "C": (1.0, 1.0), "D": (0.0, 1.0), "E": (1.0, 2.0),
+             "F": (0.0, 2.0)}  # fmt: skip
+    below, above = (
+        Sharing(("AC at A", "BD at B"), (1.0, 4.0)),
+        Sharing(("DE at D", "CF at C"), (3.0, 1.0)),
+    )
+    tower = truss(nodes, "AD BC CD AC BD CE DF EF DE CF", "AB")
+    solved = pushed(replace(tower, sharing=(below, above)), "EF", (0.0, 2.0), (100.0, 0.0))
+    assert force(solved, "AC at A") == near(20.0, 20.0)
+    assert force(solved, "BD at B") == near(80.0, -80.0)
+    assert force(solved, "DE at D") == near(75.0, 75.0)
+    assert force(solved, "CF at C") == near(25.0, -25.0)
+
+
 def test_what_lacks_a_drive_is_told_how_many() -> None:
     nodes = {"A": (0.0, 0.0), "B": (1.0, 0.0), "C": (1.0, 1.0), "D": (0.0, 1.2), "E": (0.5, 2.0)}
     four = truss(nodes, "AD BC CD", "AB")
