@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from fea.beam.round_section import Circle
-from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
+from fea.beam.timoshenko import (
+    AXIAL,
+    MAX_CONE_CHANGE,
+    MOMENT,
+    SHEAR,
+    TORQUE,
+    InternalForces,
+    stepped_beam,
+)
 from fea.core.material import Material
 from fea.core.pin_loads import BODY_SURFACE, UnitLoad
 from geometry import GeometryError, Pin, Segment
@@ -170,3 +178,16 @@ def test_a_couple_along_its_band(clamps: tuple[str, ...], steel: Material) -> No
         V = 6.0 / L * (0.25 - x**2) if clamps else 0.0
         M = 0.5 - 1.5 * x + 2.0 * x**3 if clamps else 0.0
         assert one(forces, z)[:2] == pytest.approx([V, M], rel=1e-12, abs=1e-12)
+
+
+def test_cells_of_a_cone_change_little_from_one_to_the_next(steel: Material) -> None:
+    """Each has the thinnest of its sections, which are equally apart from end to end."""
+    cone = Segment(0.04, 0.02, end_diameter=0.03)
+    pin = Pin("P", (Segment(0.01, 0.02), cone, Segment(0.01, 0.03, connection="A")))
+    beam = stepped_beam(pin, steel, (UnitLoad("A", "force", 1),), ("start",))
+    outer = np.array([s.outer for s in beam.sections])
+    steps = np.diff(outer[1:-1])  # of the cells on the cone, whose first is as thin as the shaft
+    assert outer[1] == pytest.approx(0.01)
+    assert steps == pytest.approx(steps.mean())
+    assert outer[-1] - outer[-2] == pytest.approx(steps.mean())
+    assert steps.max() <= MAX_CONE_CHANGE * 0.02

@@ -18,7 +18,7 @@ from fea.core.pin_loads import Floats, PinLoads
 from fea.core.tractions import Traction
 from fea.harmonic.assembly import around
 from fea.harmonic.model import HarmonicModel
-from fea.singular.lug_edge import edge_exponent, lug_edge_exponent
+from fea.singular.lug_edge import edge_exponent, lug_edge_exponent, next_power
 from fea.singular.williams import plane_exponent
 from fea.support.bands import Bands
 from fea.support.contact.contact import ContactProblem
@@ -108,6 +108,17 @@ def test_one_material_whatever_it_is() -> None:
     assert left == pytest.approx(0.0, abs=1e-14)
     for nu in (-0.5, 0.0, 0.49):
         assert lug_edge_exponent(material(nu, 7.0), material(nu, 7.0)) == pytest.approx(s)
+
+
+def test_the_next_term_is_from_that_of_a_punch_to_an_even_one() -> None:
+    """Of a rigid lug the power is that of a punch, 1/2; it rises to 1 as the lug becomes soft."""
+    powers = [
+        next_power(Material("pin", E, NU), Material("lug", E * 10.0**x, NU))
+        for x in (6.0, 2.0, 0.0, -2.0, -6.0)
+    ]
+    assert powers == sorted(powers)
+    assert powers[0] == pytest.approx(0.5, abs=1e-5)
+    assert powers[-1] == pytest.approx(1.0, abs=2e-3)  # as the root of the ratio
 
 
 @each("angle", [0.3, 1.0, RIGHT, 2.0, 3.0])

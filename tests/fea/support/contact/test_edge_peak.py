@@ -21,12 +21,14 @@ from fea.support.contact.edge_peak import (
     EdgePeak,
     contact_edges,
     edge_peak,
+    strength_at_edge,
 )
 from fea.support.contact.joint_contact import JointContact
 from fea.support.contact.resolution import Resolution
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from geometry import Pin, Segment
+from tests.support.each import each
 
 D = 0.02
 STEEL = Material("steel", 210e9, 0.3)
@@ -162,3 +164,29 @@ def test_resolved_rings_have_it(radius: float, lugs: Material) -> None:
         for band, name in enumerate("LMR"):
             assert rough.largest_pressure[0, band] < 0.5 * resolved[band]
             assert peak(rough, name).pressure == pytest.approx(resolved[band], rel=EDGE_PEAK_ERROR)
+
+
+@each(("s", "b"), [(0.5, 0.5), (0.226, 0.45)])
+@each("q", [0.5, 0.9])
+def test_the_strength_is_that_of_the_pressure_around_it(s: float, b: float, q: float) -> None:
+    """Rings under the mean of K x^-s (1 + b (r / x)^(2 - 2 s)) + A x^q, by quadrature: K is found,
+    exactly where A is none and within 3 % where it adds a quarter at one diameter.
+    """
+    K, r, d = 3e6, 1e-4, 0.02
+    cuts = np.concatenate([[0.0], np.geomspace(r, 0.03, 14)])
+    for part, within in ((0.0, 1e-6), (0.25, 0.03), (-0.25, 0.03)):
+        A = part * K * d ** (-s - q)
+
+        def pressed(x: float, A: float = A) -> float:
+            return K * x**-s * (1.0 + b * (r / x) ** (2.0 - 2.0 * s)) + A * x**q
+
+        outer = [quad(pressed, *ends, epsrel=1e-10)[0] for ends in pairwise(cuts[1:])]
+        # From the face the rounding carries the rest: in all what it would without the radius.
+        whole = K / (1.0 - s) + A / (1.0 + q)  # up to 1 m
+        beyond = quad(pressed, cuts[-1], 1.0, epsrel=1e-10, limit=200)[0]
+        last = K * b * r ** (2.0 - 2.0 * s) / (1.0 - s)  # of the term with b beyond 1 m
+        forces = np.array([whole - beyond - last - sum(outer), *outer])
+        mean = forces / np.diff(cuts)
+        found = strength_at_edge(np.stack([0.5 * mean, mean], axis=1), np.diff(cuts), r, (s, q), d)
+        assert found == pytest.approx(K, rel=within)
+        assert strength_at_edge(-mean[:, None], np.diff(cuts), r, (s, q), d) == 0.0
