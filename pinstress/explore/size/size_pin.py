@@ -141,7 +141,9 @@ class _Search:
         def tell(doing: str) -> None:
             self.tell(f"{said}: {doing}")
 
-        counting = self.answers[0].counting if self.answers else None
+        # Over ranges another case may count than as described.
+        seen = self.answers if self.sized.over_ranges else self.answers[:1]
+        counting = tuple(dict.fromkeys(case for x in seen for case in x.counting)) or None
         if accuracy == "full":
             answer = self.sized.full(scale, counting or (), tell)
         else:
