@@ -38,7 +38,7 @@ def test_even_pressure_is_lames_in_bushing_and_hole() -> None:
 
 
 def test_the_mean_over_a_ring_counts_lengths() -> None:
-    """Of z^2 from 1 to 4 on two edges, one twice as long as the other: 7."""
-    z = np.array([1.0, 2.0, 4.0, 1.5, 3.0])
+    """Of z^2 from 1 to 5 on two edges, one three times as long as the other: 31 / 3."""
+    z = np.array([1.0, 2.0, 5.0, 1.5, 3.5])
     at, edges = np.stack([np.ones(5), z], axis=1), np.array([[0, 1, 3], [1, 2, 4]])
-    assert _mean(edges, at, z[:, None] ** 2) == pytest.approx([7.0])
+    assert _mean(edges, at, z[:, None] ** 2) == pytest.approx([31.0 / 3.0])

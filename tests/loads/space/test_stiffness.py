@@ -90,7 +90,11 @@ def test_a_tube_is_a_bar_less_its_bore() -> None:
 
 
 def test_a_link_that_is_not_stated_is_the_geometric_mean() -> None:
-    stated = {"a": BAR.times(4.0), "b": BAR, "rigid": LinkStiffness(*4 * [math.inf])}
+    stated = {
+        "a": BAR.times(4.0),
+        "b": BAR,
+        "rigid": LinkStiffness(math.inf, math.inf, math.inf, math.inf),
+    }
     mean = complete(["a", "b", "c", "rigid"], stated, 1.0)["c"]
     assert astuple(mean)[:4] == pytest.approx(astuple(BAR.times(2.0))[:4])
     assert complete(["c"], {}, 2.0)["c"] == round_link(0.2)

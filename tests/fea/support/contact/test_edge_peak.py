@@ -178,7 +178,7 @@ def test_the_strength_is_that_of_the_pressure_around_it(s: float, b: float, q: f
         A = part * K * d ** (-s - q)
 
         def pressed(x: float, A: float = A) -> float:
-            return K * x**-s * (1.0 + b * (r / x) ** (2.0 - 2.0 * s)) + A * x**q
+            return float(K * x**-s * (1.0 + b * (r / x) ** (2.0 - 2.0 * s)) + A * x**q)
 
         outer = [quad(pressed, *ends, epsrel=1e-10)[0] for ends in pairwise(cuts[1:])]
         # From the face the rounding carries the rest: in all what it would without the radius.
