@@ -154,6 +154,7 @@ def test_notches_of_a_pin() -> None:
     )
     left, right, bore, sharp, tube = notches(pin)
     assert (left.on, right.on) == (0, 2)
+    assert (bore.on, sharp.on, tube.on) == (3, 2, 3)  # the thinner wall or shaft
     assert left.bending == right.bending == shoulder_factor(BENDING_FIT, 0.03, 0.02, 0.002)
     assert 0.038 < left.z < 0.04  # in the fillet, by symmetry on both sides
     assert left.z - 0.04 == pytest.approx(0.06 - right.z)
