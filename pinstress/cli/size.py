@@ -31,6 +31,7 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -116,6 +117,7 @@ class _Sizing:
     ) -> None:
         self.goal = goal
         self._study, self._target, self._state = study, target, state
+        self._inputs = inputs(study)
         self._pins: dict[str, SizingResult] = {}
         self.written = False
 
@@ -145,7 +147,11 @@ class _Sizing:
         self.written = True
 
     def finish(self, result: SizingResult) -> None:
-        """Save a pin that is sized."""
+        """Save a pin that is sized.
+
+        Raises: InputError if a file of the study has changed, or if nothing can be written.
+        """
+        require_unchanged(self._study, self._inputs)
         self._pins.pop(result.pin, None)  # so that the pin becomes the last in the dictionary
         self._pins[result.pin] = result
         self._state.write(tuple(self.pins))
