@@ -55,7 +55,7 @@ class Removed:
         try:
             cuts = CutFaces(self.faces, size).cuts(pin)
             with gmsh_model(pin.name) as gmsh:
-                solid = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
+                solid = cut_solid(gmsh, pin, CutPin(pin, cuts).cuts)
                 removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, solid, pin))
         except (ValueError, MeshError):  # GeometryError is a ValueError
             return (self.recess,)
