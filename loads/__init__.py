@@ -13,7 +13,6 @@ from loads.forces.over_time import (
     OverTime,
     PeakForces,
     over_time,
-    peak_forces,
     require_possible,
 )
 from loads.forces.power_balance import energy, ledger
