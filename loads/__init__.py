@@ -3,7 +3,8 @@
 All quantities are in SI units. Of the other packages here, it imports only `pinbase`.
 """
 
-from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
+from loads.forces.acting import Applied, ForceLaw, Load, Spring
+from loads.forces.corners import Varying
 from loads.forces.curve import ForceTable
 from loads.forces.holding import locked
 from loads.forces.inverse_dynamics import Dynamics, motion_reactions
