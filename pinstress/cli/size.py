@@ -75,7 +75,8 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
         sized, new = _size(plan, sizing, options)
     rows = [_row(study, new, result) for result in sized]
     with unneeded(target):
-        print_sizes(rows, goal.written, units_of(study), console(), sizing.written)
+        units = units_of(study)
+        print_sizes(rows, goal.written, units, console(), sizing.written, goal.over_ranges)
     if not options.quiet:
         close(study, new, target if sizing.written else None)
     missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
@@ -177,11 +178,14 @@ class _Sizing:
         return moved(text, self._study.path.parent, self._target.parent).encode()
 
 
-def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGoal:
+def sizing_goal(
+    study: Study, fos: float | None, step: float | None, over_ranges: bool = False
+) -> SizingGoal:
     """Return the goal of sizing: the factor to reach and the diameters to choose from.
 
     fos: the factor, or None for that of the study.
     step: step of diameters, m, instead of the study's series.
+    over_ranges: as in SizingGoal.
 
     Raises: InputError.
     """
@@ -194,7 +198,7 @@ def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGo
             "[analysis]",
             code="no-required-factor",
         )
-    return SizingGoal(required, standard_diameters(study.table.size, step), more)
+    return SizingGoal(required, standard_diameters(study.table.size, step), more, over_ranges)
 
 
 def _stated_goal(study: Study) -> tuple[float | None, dict[tuple[str, str], float]]:
@@ -271,6 +275,7 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
         why=sized.why or (judged.why if judged else ""),
         limited=sized.limited,
         outcome=NOT_DECIDED if sized.why or judged is None else judged.outcome,
+        least="" if judged is None else judged.least,
     )
 
 

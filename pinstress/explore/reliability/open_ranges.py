@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from fea.support.records import TOGETHER, Variation
+from pinbase.grouped import grouped
 from pinbase.keys import key_part
 from pinstress.explore.sweep.number import Path
 from pinstress.study.reading.file import Study
@@ -52,12 +55,42 @@ def without_strength_ranges(study: Study, laws: Collection[Path]) -> Study:
     return changed_study(study, {key: {} for key in keys}) if keys else study
 
 
-def growth(row: PinResult | None) -> float:
+def growth(row: PinResult | None) -> tuple[float, float]:
     """Return the ratio, at least 1, of the largest stress over all open ranges of a row to the
-    stress as described; 1 for None or a row without a factor.
+    stress as described, and that of the stress beneath contact; 1 for None or a row without a
+    factor.
     """
     spread = factor_spread(row) if row else None
-    return max((row.safety_factor or 0.0) / spread[0], 1.0) if row and spread else 1.0
+    if row is None or spread is None or not row.safety_factor:
+        return 1.0, 1.0
+    return max(row.safety_factor / spread[0], 1.0), _growth_beneath(row)
+
+
+def _growth_beneath(row: PinResult) -> float:
+    """Return the growth of the stress beneath contact, as `growth` does; 1 without contact."""
+    contact = row.places.contact if row.places else None
+    if contact is None or not contact.beneath:
+        return 1.0
+    ratios = list[float]()
+    if row.joint is not None and row.joint.range is not None:
+        ratios += _ratios_over_joint(row.joint.range.variations, contact.beneath)
+    if row.landing is not None and row.landing.beneath is not None:
+        ratios.append(float(row.landing.beneath.max()) / contact.beneath)
+    if row.sharing is not None and row.sharing.beneath is not None:
+        ratios.append(row.sharing.beneath[1] / contact.beneath)
+    if row.strength_range is not None and row.yield_strength:
+        ratios.append(row.yield_strength / row.strength_range[0])
+    return math.prod(max(1.0, ratio) for ratio in ratios)
+
+
+def _ratios_over_joint(variations: Iterable[Variation], beneath: float) -> Iterable[float]:
+    """Return the largest ratio of the stress beneath contact over each property of the joint, or
+    over all properties where they were solved together.
+    """
+    known = [(x.what, (x.beneath or 0.0) / beneath) for x in variations]
+    together = any(what == TOGETHER for what, _ in known)
+    groups = grouped(("" if together else what, ratio) for what, ratio in known)
+    return [max(ratios) for ratios in groups.values()]
 
 
 def left_out(

@@ -18,6 +18,7 @@ from reports.data.row import PinResult
 Array = NDArray[np.float64]
 
 CURVE_POINTS = 80  # points of a distribution
+NO_GROWTH = np.ones((1, 2))
 MIN_SAMPLES_BELOW = 10  # smallest number of weighted samples below a point of a distribution
 
 
@@ -32,12 +33,12 @@ class RiskColumn:
         selected = answers.system if self.row is None else answers
         return selected.used[:, self.row or 0], selected.errors[:, self.row or 0]
 
-    def deep(self, answers: Answers, growths: Array | float = 1.0) -> Array:
+    def deep(self, answers: Answers, growths: Array = NO_GROWTH) -> Array:
         """Return the utilisation (n,), or that beneath contact if it is larger.
 
-        growths: (rows,) factors on the stress of each row.
+        growths: (rows, 2) factors on the stress of each row, and on that beneath contact.
         """
-        deep = answers.deep * growths
+        deep = np.maximum(answers.used * growths[:, 0], answers.beneath * growths[:, 1])
         return np.asarray(deep.max(axis=1) if self.row is None else deep[:, self.row])
 
     def increased(self, answers: Answers, part: float) -> Array:
@@ -88,11 +89,11 @@ class Sample:
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def deep(
-        self, settings: ReliabilityTable, column: RiskColumn, growths: Array | float = 1.0
+        self, settings: ReliabilityTable, column: RiskColumn, growths: Array = NO_GROWTH
     ) -> Estimate:
         """Return the probability of failure or of dependence on the stress beneath contact.
 
-        growths: factors on the stress of each row over the open ranges.
+        growths: as in RiskColumn.deep, over the open ranges.
         """
         margin = 1.0 - settings.factor * column.deep(self.answers, growths)
         return probability(self.draws, margin, 0.0, settings.confidence)
@@ -128,12 +129,12 @@ def risk_of(
     sampled: Sample,
     weighted: Sample | None,
     settings: ReliabilityTable,
-    growths: Array | float = 1.0,
+    growths: Array = NO_GROWTH,
 ) -> Risk:
     """Return the risk of a row by plain and importance sampling.
 
-    growths: (rows,) factors on the stress of each row over the open ranges
-    (open_ranges.growth).
+    growths: (rows, 2) factors on the stress of each row, and on that beneath contact, over the open
+    ranges (open_ranges.growth).
     """
     plain = sampled.probability(settings, row.column)
     by_weights = weighted and weighted.probability(settings, row.column)
@@ -183,12 +184,12 @@ def _over_open(
     weighted: Sample | None,
     row: AssessedRow,
     settings: ReliabilityTable,
-    growths: Array | float,
+    growths: Array,
 ) -> Spread | None:
     """Return the probability of failure at the worst end of all open ranges, with the stress
     beneath contact; None if no range raises the stress.
     """
-    every = np.broadcast_to(growths, sampled.answers.used.shape[1])
+    every = np.broadcast_to(growths, (sampled.answers.used.shape[1], 2))
     its = every if row.column.row is None else every[row.column.row]
     if np.all(its == 1.0):
         return None
