@@ -83,6 +83,10 @@ class Fineness:
         """
         return np.asarray(np.linspace(0.0, 1.0, self.arc + 1) ** FILLET_GRADING)
 
+    def __post_init__(self) -> None:
+        if self.sectors % 8:
+            raise ArgumentError("sectors must be a multiple of 8", "not-a-multiple")
+
 
 @dataclass(frozen=True)
 class Hexahedra:

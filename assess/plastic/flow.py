@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fea.core.material import Material
+from geometry import ArgumentError
 from pinbase.arrays import Floats
 
 # Share of the elastic stiffness in the tangent. It keeps the tangent positive definite at the limit
@@ -44,12 +45,19 @@ class Flow(NamedTuple):
 
 @dataclass(frozen=True)
 class FlowRule:
-    """The flow rule of an elastic-plastic material, which has a yield strength.
+    """The flow rule of an elastic-plastic material; without hardening the yield stress is constant.
 
-    Without hardening the yield stress is constant.
+    Raises: ArgumentError for a material without a yield strength.
     """
 
     material: Material
+
+    def __post_init__(self) -> None:
+        if self.material.yield_strength is None:
+            raise ArgumentError(
+                f"material {self.material.name} has no yield strength, which a limit load needs",
+                "no-yield-strength",
+            )
 
     @cached_property
     def curve(self) -> tuple[Floats, Floats]:

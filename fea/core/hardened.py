@@ -20,7 +20,7 @@ from typing import Literal
 
 import numpy as np
 
-from geometry import Edge, Pin, meridian
+from geometry import ArgumentError, Edge, Pin, meridian
 from pinbase.arrays import Floats, Mask
 
 Part = Literal["case", "core", "unhardened"]
@@ -37,6 +37,9 @@ class Hardened:
     start, end: z of its ends, m.
     surface, core: yield strengths, Pa.
     depth: of the case, m.
+
+    Raises: ArgumentError for a depth or strengths that are not positive, and for a core that is
+    stronger than the surface.
     """
 
     start: float
@@ -44,6 +47,14 @@ class Hardened:
     surface: float
     core: float
     depth: float
+
+    def __post_init__(self) -> None:
+        if not (self.depth > 0.0 and 0.0 < self.core <= self.surface < math.inf):
+            raise ArgumentError(
+                "a hardened surface needs a positive depth, and a core that is not stronger than "
+                "the surface",
+                "bad-hardened",
+            )
 
     def strength(self, depth: Floats) -> Floats:
         """The yield strength, Pa, at depths (...), m; the rule is stated only here."""

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
 
 from fea.core.hardened import Hardened, StrengthPart, strength_parts
+from geometry import ArgumentError
 from pinbase.arrays import Floats
 
 
@@ -23,6 +27,9 @@ class Material:
     failure_strain: equivalent plastic strain at which a lug breaks.
     thermal_expansion: mean coefficient, 1/K.
     strength_range: lower and upper end of the yield strength, Pa, where stated.
+
+    Raises: ArgumentError outside -1 < poisson_ratio < 0.5, for a modulus that is not positive and
+    finite, and for hardening whose strains do not increase or whose stresses decrease.
     """
 
     name: str
@@ -58,6 +65,30 @@ class Material:
     def elastic_part(self) -> Material:
         """The material with only the properties on which linear stress depends, without a name."""
         return Material("", self.youngs_modulus, self.poisson_ratio, self.density)
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.youngs_modulus < np.inf:
+            raise ArgumentError(
+                f"material {self.name}: Young's modulus must be positive and finite", "not-positive"
+            )
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise ArgumentError(
+                f"material {self.name}: Poisson's ratio must be between -1 and 0.5, not "
+                f"{self.poisson_ratio:g}",
+                "out-of-range",
+            )
+        if self.hardening and not self._hardens():
+            raise ArgumentError(
+                f"material {self.name}: hardening needs a yield strength, plastic strains that "
+                "increase from above 0, and stresses that do not decrease from the yield strength",
+                "bad-hardening",
+            )
+
+    def _hardens(self) -> bool:
+        if self.yield_strength is None:
+            return False
+        points = ((0.0, self.yield_strength), *self.hardening)
+        return all(a < b and s <= t < np.inf for (a, s), (b, t) in pairwise(points))
 
     def strength_parts(self, length: float) -> tuple[StrengthPart, ...]:
         """The parts of a pin of a length (m) with hardened stretches; empty without these."""

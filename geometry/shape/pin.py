@@ -244,10 +244,16 @@ def _check_dimensions(pin: Pin) -> None:
         raise GeometryError(f"{where}: the profile has no segments", "no-segments")
     for i, s in enumerate(pin.segments, 1):
         what, at = f"{where}, segment {i}", ("segment", i)
-        if min(s.diameters) <= 0.0:
+        if not (math.isfinite(s.length) and s.length > 0.0):
+            raise GeometryError(f"{what}: the length must be positive", "not-positive", at)
+        if not all(math.isfinite(d) and d > 0.0 for d in s.diameters):
             raise GeometryError(f"{what}: the diameter must be positive", "not-positive", at)
         if not all(0.0 <= b < d for b, d in zip(s.bores, s.diameters, strict=True)):
             raise _bore_too_large(what, i)
+        if s.fillet is not None and not s.fillet >= 0.0:
+            raise GeometryError(f"{what}: the fillet must not be negative", "negative", at)
+        if not all(radius >= 0.0 for radius in (*s.edge_radii, *s.bore_radii)):
+            raise GeometryError(f"{what}: a radius must not be negative", "negative", at)
         if s.cone and s.connection:
             raise GeometryError(
                 f"{what}: a link cannot bear on a cone, as {s.connection} does; give it a segment "
@@ -255,6 +261,8 @@ def _check_dimensions(pin: Pin) -> None:
                 "band-on-cone",
                 at,
             )
+    if not pin.fillet >= 0.0:
+        raise GeometryError(f"{where}: the fillet must not be negative", "negative")
 
 
 def _bore_too_large(what: str, i: int) -> GeometryError:

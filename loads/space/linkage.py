@@ -10,14 +10,15 @@ import numpy as np
 
 from loads.linkage.linkage import Contradiction, LinkageError, parallel_contradictions
 from loads.linkage.parts import GROUND, Parallel, Sharing
-from loads.space.kinds import Kind
+from loads.space.kinds import KINDS, Kind
 from loads.space.stiffness import LinkStiffness
 from pinbase.arrays import Floats
 
 Vector = tuple[float, float, float]
 Inertia = tuple[Vector, Vector, Vector]
 
-MIN_DIRECTION = 1e-9  # m, length of a line up to which it defines no direction
+MIN_DIRECTION = 1e-9  # length of a vector, up to which it defines no direction
+MAX_COSINE = 1.0 - 1e-9  # cosine of the angle between two axes, above which they are parallel
 RIGHT_ANGLE_TOLERANCE = 1e-6  # largest cosine of the angle between the axes of a universal joint
 INERTIA_ROUND_OFF = 1e-9  # relative to the largest element of an inertia tensor
 
@@ -235,8 +236,16 @@ def unit(vector: Vector) -> Floats:
     return np.asarray(v / np.linalg.norm(v))
 
 
+def _has_direction(vector: Vector) -> bool:
+    """Whether a vector is finite and not zero."""
+    return bool(MIN_DIRECTION < np.linalg.norm(vector) < np.inf)
+
+
 def _contradictions(linkage: SpaceLinkage) -> Iterator[Contradiction]:
     """All contradictions between the parts of a linkage."""
+    if not linkage.joints:
+        yield "the linkage has no joints", "no-joints", ()
+    bodies = {b.name: b for b in linkage.bodies}
     measured = {m.name for m in linkage.measured}
     for kind, names in (
         ("body", [b.name for b in linkage.bodies]),
@@ -246,24 +255,64 @@ def _contradictions(linkage: SpaceLinkage) -> Iterator[Contradiction]:
     ):
         for name in sorted({n for n in names if names.count(n) > 1}):
             yield f"{kind} {name!r} is named twice; names must be unique", "duplicate-name", ()
-    if any(b.name == GROUND for b in linkage.bodies):
+    if GROUND in bodies:
         text = f"body {GROUND!r}: this name is reserved for the fixed frame; rename the body"
         yield text, "reserved-name", ("body", GROUND)
     for joint in linkage.joints:
-        yield from _joint_contradictions(joint)
+        yield from _joint_contradictions(joint, {*bodies, GROUND})
     for body in linkage.bodies:
         yield from _body_contradictions(body)
     for m in linkage.measured:
-        yield from _measured_contradictions(m)
+        yield from _measured_contradictions(m, linkage)
+    for name in linkage.driven:
+        if name not in measured:
+            yield f"drive {name!r} is no measured coordinate", "unknown-coordinate", ("drive", name)
+    for ratio in linkage.ratios:
+        if len(ratio.weights) != len(ratio.measured) or not set(ratio.measured) <= measured:
+            yield f"gear {ratio.name}: its coordinates are not known", "unknown-coordinate", ()
     for rule in linkage.parallel:
         yield from parallel_contradictions(rule, linkage.parallel, linkage.driven, measured)
 
 
-def _joint_contradictions(joint: SpaceJoint) -> Iterator[Contradiction]:
-    """Contradictions of one joint, whose axes are those that its kind needs."""
+def _joint_contradictions(joint: SpaceJoint, known: set[str]) -> Iterator[Contradiction]:
+    """Contradictions of one joint: its bodies, and the directions that its kind needs."""
     at = ("joint", joint.name)
+    for body in (joint.base, joint.moving):
+        if body not in known:
+            yield f"joint {joint.name}: there is no body {body!r}", "unknown-body", at
     if joint.base == joint.moving:
         yield f"joint {joint.name} connects {joint.base} to itself", "same-body", at
+    kind = KINDS[joint.kind]
+    needed = {"axis": kind.axes > 0, "second_axis": kind.axes > 1}
+    for key, needs in needed.items():
+        given = getattr(joint, key)
+        if needs and given is None:
+            yield (
+                f"joint {joint.name}: a {joint.kind} joint needs {key} = [x, y, z]",
+                "no-direction",
+                at,
+            )
+        elif given is not None and not needs:
+            yield f"joint {joint.name}: a {joint.kind} joint has no {key}", "no-direction", at
+        elif given is not None and not _has_direction(given):
+            yield (
+                f"joint {joint.name}: {key} = {list(given)} is no direction; give a vector that is "
+                "finite and not zero",
+                "no-direction",
+                at,
+            )
+    if kind.axes > 1 and joint.axis is not None and joint.second_axis is not None:
+        if not (_has_direction(joint.axis) and _has_direction(joint.second_axis)):
+            return
+        cosine = abs(float(unit(joint.axis) @ unit(joint.second_axis)))
+        if cosine > RIGHT_ANGLE_TOLERANCE:
+            parallel = "parallel" if cosine > MAX_COSINE else "not at a right angle"
+            yield (
+                f"joint {joint.name}: the axes of a universal joint are {parallel}; they are those "
+                "of its cross, at a right angle to each other",
+                "axes-not-square",
+                at,
+            )
     if joint.friction and joint.kind != "revolute":
         text = f"joint {joint.name}: only revolute joints can have friction, not {joint.kind} ones"
         yield text, "friction-kind", at
@@ -272,11 +321,13 @@ def _joint_contradictions(joint: SpaceJoint) -> Iterator[Contradiction]:
 def _body_contradictions(body: RigidBody) -> Iterator[Contradiction]:
     """Contradictions of one body: an inertia tensor that no distribution of mass can have."""
     tensor = np.asarray(body.inertia, dtype=float)
-    moments = np.linalg.eigvalsh(tensor)
+    moments = np.linalg.eigvalsh(0.5 * (tensor + tensor.T))
     largest = float(np.abs(tensor).max())
     slack = INERTIA_ROUND_OFF * largest
     at = ("body", body.name)
-    if moments[0] < -slack or moments[0] + moments[1] < moments[2] - slack:
+    if np.abs(tensor - tensor.T).max() > slack:
+        yield f"body {body.name}: its inertia is not symmetric", "bad-inertia", at
+    elif moments[0] < -slack or moments[0] + moments[1] < moments[2] - slack:
         yield (
             f"body {body.name}: no distribution of mass has this inertia (principal moments in "
             f"the ratio {' : '.join(f'{m / largest:.4g}' for m in moments)}; each is at most the "
@@ -286,10 +337,32 @@ def _body_contradictions(body: RigidBody) -> Iterator[Contradiction]:
         )
 
 
-def _measured_contradictions(m: Measured) -> Iterator[Contradiction]:
+def _measured_contradictions(m: Measured, linkage: SpaceLinkage) -> Iterator[Contradiction]:
     """Contradictions of one measured coordinate."""
     at = ("drive", m.name)
-    if isinstance(m, PointDistance) and m.drawn <= MIN_DIRECTION:
-        yield f"{m.name}: its two points coincide as drawn", "no-direction", at
-    if isinstance(m, BodyAngle) and m.base == m.moving:
-        yield f"{m.name}: {m.base} cannot turn against itself", "same-body", at
+    if isinstance(m, PointDistance | BodyAngle):
+        for body in m.bodies if isinstance(m, PointDistance) else (m.base, m.moving):
+            if body not in linkage.index:
+                yield f"{m.name}: there is no body {body!r}", "unknown-body", at
+    if isinstance(m, PointDistance):
+        if m.drawn <= MIN_DIRECTION:
+            yield f"{m.name}: its two points coincide as drawn", "no-direction", at
+        return
+    if isinstance(m, BodyAngle):
+        if m.base == m.moving:
+            yield f"{m.name}: {m.base} cannot turn against itself", "same-body", at
+        if not _has_direction(m.axis):
+            yield f"{m.name}: axis = {list(m.axis)} is no direction", "no-direction", at
+        return
+    joint = next((j for j in linkage.joints if j.name == m.joint), None)
+    if joint is None:
+        yield f"{m.name}: there is no joint {m.joint!r}", "unknown-joint", at
+        return
+    kind, wanted = KINDS[joint.kind], "angle" if isinstance(m, JointAngle) else "travel"
+    if not getattr(kind, wanted):
+        kinds = " or ".join(name for name, k in KINDS.items() if getattr(k, wanted))
+        yield (
+            f"{m.name}: joint {m.joint} is {joint.kind} and has no {wanted}; drive a {kinds} joint",
+            "joint-kind",
+            at,
+        )

@@ -181,6 +181,7 @@ def test_outlines_that_cannot_be(outside: list[Bend], bore: list[Bend], code: st
         ((Segment(1, 2, end_diameter=1, connection="B"),), "band-on-cone"),
         ((Segment(1, 2, end_diameter=-1.0),), "not-positive"),
         ((Segment(1, 2, bore=1, end_bore=2),), "bore-too-large"),
+        ((Segment(1, 2, edge_radii=(-0.1, 0)),), "negative"),
         ((Segment(1, 2, edge_radii=(1.1, 0)),), "fillets-overlap"),
         ((Segment(1, 2, edge_radii=(0.6, 0.6)),), "fillets-overlap"),
         ((Segment(1, 2, edge_radii=(0, 0.1)), Segment(1, 3)), "no-edge"),

@@ -107,10 +107,13 @@ def test_surfaces_go_by_connection_name_or_number() -> None:
     ("segments", "fillet", "code", "at"),
     [
         ((), 0.0, "no-segments", ()),
+        ((Segment(0.0, 1.0),), 0.0, "not-positive", ("segment", 1)),
         ((Segment(1.0, -1.0),), 0.0, "not-positive", ("segment", 1)),
+        ((Segment(1.0, np.inf),), 0.0, "not-positive", ("segment", 1)),
         ((Segment(1.0, 1.0, bore=1.0),), 0.0, "bore-too-large", ("segment", 1)),
         ((Segment(1.0, 2.0), Segment(1.0, 3.0)), 0.6, "fillet-too-large", ("segment", 1)),
         ((Segment(1, 3), Segment(0.5, 2), Segment(1, 3)), 0.3, "fillets-overlap", ("segment", 2)),
+        ((Segment(1, 2), Segment(1, 3)), -0.1, "negative", ()),
         ((Segment(1, 3, bore=2.5), Segment(1, 2)), 0.0, "segments-separate", ("segment", 1)),
         ((Segment(1, 3, name="a"), Segment(1, 2, connection="a")), 0.0, "duplicate-name", ()),
         ((Segment(1, 3, name="start"),), 0.0, "duplicate-name", ()),

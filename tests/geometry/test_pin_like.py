@@ -93,3 +93,5 @@ def test_weight_and_bore() -> None:
 def test_nothing_is_no_pin() -> None:
     with raises(GeometryError, "no-segments"):
         Pin("P", ())
+    with raises(GeometryError, "negative", "segment 1"):
+        Pin("P", (Segment(0.02, 0.03, fillet=-0.001),))

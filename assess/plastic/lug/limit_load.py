@@ -22,6 +22,7 @@ import numpy as np
 from assess.plastic.lug.bounds import lower_program, upper_program
 from assess.plastic.lug.cone_program import ConeSolution, solve_cone_program
 from assess.plastic.lug.mesh import PlaneMesh, SizeField, half_lug_mesh
+from geometry import ArgumentError
 from geometry.shape.lug_outline import LugOutline
 from pinbase.arrays import Floats
 
@@ -85,6 +86,8 @@ def lug_limit_load(
 
     Raises: ArgumentError for a strength that is not positive, or for a ring; MeshError; SolveError.
     """
+    if not (math.isfinite(yield_strength) and yield_strength > 0.0):
+        raise ArgumentError("the yield strength of a lug must be positive", "not-positive")
     # The lug is two halves; in the programs the unit of length is the radius of the hole, and the
     # unit of stress the shear strength.
     unit = 2.0 * yield_strength / math.sqrt(3.0) * lug.hole / 2.0

@@ -22,6 +22,7 @@ class Bushing:
     interference: on the diameter, before it was pressed in, m; 0 for a bonded bushing.
     outgrown: change of the interference with the temperature of a case, m.
 
+    Raises: ArgumentError for a thickness that is not positive.
     """
 
     thickness: float
@@ -41,6 +42,12 @@ class Bushing:
         """
         return self.interference + self.outgrown
 
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.thickness) and self.thickness > 0.0):
+            raise ArgumentError("the thickness of a bushing must be positive", "not-positive")
+        if not (math.isfinite(self.interference) and self.interference >= 0.0):
+            raise ArgumentError("the interference of a bushing must not be negative", "negative")
+
 
 @dataclass(frozen=True)
 class Shank:
@@ -55,6 +62,7 @@ class Shank:
     angle: of the shank from the x axis of the pin, seen from the bore, rad; None where the
     mechanism gives it.
 
+    Raises: ArgumentError for a length that is not positive.
     """
 
     shape: HeadShape
@@ -62,6 +70,12 @@ class Shank:
     length: float
     end: float
     angle: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("width", "length", "end"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ArgumentError(f"the {name} of a shank must be positive", "not-positive")
 
 
 @dataclass(frozen=True)
@@ -74,7 +88,7 @@ class LugRange:
     tilt: stiffness, N m/rad.
     interference: of the bushing, m.
 
-    Raises: ArgumentError for an upper end below the lower one.
+    Raises: ArgumentError for an upper end below the lower one, or a stiffness that is not positive.
     """
 
     clearance: tuple[float, float] | None = None
@@ -90,6 +104,8 @@ class LugRange:
                     f"range of the {name}: give the smaller value first, then the larger one",
                     "range-order",
                 )
+        if self.stiffness is not None and not self.stiffness[0] > 0.0:
+            raise ArgumentError("range of the stiffness: it must be positive", "not-positive")
 
 
 @dataclass(frozen=True)
@@ -127,6 +143,22 @@ class Lug:
     growth: float = 0.0
     friction: float = 0.0
     axial: tuple[str, str] | None = None
+
+    def __post_init__(self) -> None:
+        what = f"lug {self.connection}"
+        if not (math.isfinite(self.outer_diameter) and self.outer_diameter > 0.0):
+            raise ArgumentError(f"{what}: its outer diameter must be positive", "not-positive")
+        if not math.isfinite(self.clearance):
+            raise ArgumentError(f"{what}: its clearance must be a number", "not-a-number")
+        if not (math.isfinite(self.edge_radius) and self.edge_radius >= 0.0):
+            raise ArgumentError(f"{what}: its edge radius must not be negative", "negative")
+        if not self.tilt >= 0.0:
+            raise ArgumentError(
+                f"{what}: the stiffness of its tilt must not be negative", "negative"
+            )
+
+        if not 0.0 <= self.friction <= 1.0:
+            raise ArgumentError(f"{what}: its friction must be from 0 to 1", "friction-range")
 
     @property
     def loosest(self) -> float:

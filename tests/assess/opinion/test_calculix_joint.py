@@ -112,6 +112,8 @@ def test_what_this_mesh_lacks_is_refused() -> None:
     pin = Pin("P", bored, fillet=0.001)  # a wall of a quarter of the radius
     with raises(ArgumentError, "fillet", "P"):
         pin_mesh(pin, [np.array([0.0, 0.01]), np.array([0.01, 0.02])], COARSE, False)
+    with raises(ArgumentError, "not-a-multiple"):
+        Fineness(sectors=20)
     pin, lugs = clevis()
     for wrong, code in (
         (PinLoads("m", ("L", "M", "R"), np.repeat(FORK, 2, axis=0)), "not-one-instant"),

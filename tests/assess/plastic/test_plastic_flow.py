@@ -5,6 +5,7 @@ import pytest
 
 from assess.plastic.flow import Flow, FlowRule
 from fea.core.material import Material
+from geometry import ArgumentError
 from tests.support.each import each
 
 Points = tuple[tuple[float, float], ...]
@@ -64,3 +65,18 @@ def test_stress_stays_on_the_yield_surface_and_never_flows_back() -> None:
         assert (after.equivalent >= state.equivalent).all()
         assert np.abs(after.plastic[:, :3].sum(axis=1)).max() < 1e-15
         state = after
+
+
+def test_a_material_without_yield_strength_does_not_flow() -> None:
+    with pytest.raises(ArgumentError) as error:
+        FlowRule(Material("glass", E, NU))
+    assert error.value.code == "no-yield-strength"
+
+
+@each("points", [((0.0, 300e6),), ((0.02, 300e6), (0.01, 310e6)), ((0.01, 200e6),)])
+def test_hardening_that_softens_or_returns_is_refused(
+    points: Points,
+) -> None:
+    with pytest.raises(ArgumentError) as error:
+        Material("steel", E, NU, None, YIELD, hardening=points)
+    assert error.value.code == "bad-hardening"

@@ -11,7 +11,7 @@ from fea.core.hardened import (
     linear_strength,
     strength_parts,
 )
-from geometry import Pin, Segment
+from geometry import ArgumentError, Pin, Segment
 
 SHAFT = Pin("P", (Segment(0.1, 0.04, bore=0.01, fillet=0.004), Segment(0.05, 0.06, bore=0.01)))
 
@@ -60,3 +60,9 @@ def test_linear_stress_yields_at_the_crossover_depth_in_both() -> None:
     for depth, strength in ((0.002, 5e8 / 0.9), (0.02 * 4 / 9, 9e8), (0.015, 9e8)):
         parts = strength_parts((Hardened(0.0, 1.0, 9e8, 5e8, depth),), None, 1.0)
         assert linear_strength(parts, 0.02) == pytest.approx(strength)
+
+
+@pytest.mark.parametrize("wrong", [(9e8, 5e8, 0.0), (5e8, 9e8, 0.001), (9e8, 0.0, 0.001)])
+def test_impossible_case_is_refused(wrong: tuple[float, float, float]) -> None:
+    with pytest.raises(ArgumentError, match="positive depth"):
+        Hardened(0.0, 1.0, *wrong)

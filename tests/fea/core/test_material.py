@@ -6,7 +6,24 @@ import numpy as np
 import pytest
 
 from fea.core.material import Material
+from geometry import ArgumentError
 from tests.support.each import each
+from tests.support.errors import raises
+
+
+@each(
+    ("modulus", "nu", "code"),
+    [
+        (0.0, 0.3, "not-positive"),
+        (-1.0, 0.3, "not-positive"),
+        (float("nan"), 0.3, "not-positive"),
+        (2e11, 0.5, "out-of-range"),
+        (2e11, -1.0, "out-of-range"),
+    ],
+)
+def test_what_is_no_material_is_refused(modulus: float, nu: float, code: str) -> None:
+    with raises(ArgumentError, code, "material steel"):
+        Material("steel", modulus, nu)
 
 
 @each("nu", [-0.5, 0.0, 0.3, 0.49])

@@ -10,14 +10,55 @@ import pytest
 from loads import ConstantDrive, LinkageError, MotionBlocked, StateDrive
 from loads.space.acting import SpaceForce
 from loads.space.dynamics import space_reactions
-from loads.space.linkage import JointAngle, SpaceLinkage, Vector
+from loads.space.kinds import Kind
+from loads.space.linkage import JointAngle, SpaceJoint, SpaceLinkage, Vector
 from loads.space.motion import space_move
 from tests.loads.space.test_loops_in_space import bennett, rssr, slider_crank
+from tests.support.each import each
 from tests.support.errors import raises
-from tests.support.mechanism.space import grounded, joint, light, vector
+from tests.support.mechanism.space import grounded, joint, light, unit, vector
 
 Z: Vector = (0.0, 0.0, 1.0)
 ORIGIN: Vector = (0.0, 0.0, 0.0)
+NAN, INFINITE = float("nan"), float("inf")
+
+
+def single(kind: Kind, axis: Vector | None = None, second: Vector | None = None) -> SpaceLinkage:
+    """A body on the ground by one joint J."""
+    return SpaceLinkage(
+        (light("arm"),), (SpaceJoint("J", kind, "ground", "arm", ORIGIN, axis, second),)
+    )
+
+
+@each("axis", [ORIGIN, (1e-12, 0.0, 0.0), (NAN, 0.0, 1.0), (0.0, INFINITE, 1.0)])
+def test_an_axis_that_is_no_direction(axis: Vector) -> None:
+    for kind in ("revolute", "prismatic", "planar", "point-on-line"):
+        with raises(LinkageError, "no-direction", "joint J", "axis", str(axis[0])):
+            single(kind, axis)
+    with raises(LinkageError, "no-direction", "joint J", "second_axis"):
+        single("universal", Z, axis)
+
+
+def test_an_axis_that_is_missing_or_not_needed() -> None:
+    with raises(LinkageError, "no-direction", "joint J", "cylindrical", "needs axis"):
+        single("cylindrical")
+    with raises(LinkageError, "no-direction", "joint J", "needs second_axis"):
+        single("universal", Z)
+    with raises(LinkageError, "no-direction", "joint J", "spherical joint has no axis"):
+        single("spherical", Z)
+
+
+@each(
+    ("second", "word"),
+    [
+        (Z, "parallel"),
+        ((0.0, 0.0, -1.0), "parallel"),
+        (unit((1.0, 0.0, 0.2)), "not at a right angle"),
+    ],
+)
+def test_axes_of_a_universal_joint_that_make_no_cross(second: Vector, word: str) -> None:
+    with raises(LinkageError, "axes-not-square", "joint J", word, "right angle to each other"):
+        single("universal", Z, second)
 
 
 def test_the_idle_spin_of_a_link_between_two_spherical_joints() -> None:

@@ -110,3 +110,8 @@ def test_a_bushing_is_part_of_the_pin() -> None:
 def test_a_ring_is_refused() -> None:
     with pytest.raises(ArgumentError, match="without a shank"):
         lug_limit_load(LugOutline("ring", 1.0, 3.0), 1e6)
+
+
+def test_a_strength_that_is_none_is_refused() -> None:
+    with pytest.raises(ArgumentError, match="yield strength"):
+        lug_limit_load(round_lug(1.0, 3.0), 0.0)

@@ -18,11 +18,11 @@ from fea.core.tractions import tractions_of
 from fea.solve.solve import solve_in_lugs
 from fea.support.bands import Bands
 from fea.support.contact.contact_state import ContactState
-from fea.support.contact.friction import band_torques, opposed, turning_traction
+from fea.support.contact.friction import band_torques, coefficient_words, opposed, turning_traction
 from fea.support.contact.solve_joint import ContactModel
 from fea.support.lugs.lug import Lug
 from fea.support.support import PinProblem, Solution
-from geometry import Pin, Segment
+from geometry import ArgumentError, Pin, Segment
 from pinbase.arrays import Floats
 from tests.fea.support.contact.test_solve_in_lugs import FORCE, LUGS, PIN, STEADY, STEEL, D, pull
 
@@ -97,6 +97,15 @@ def test_torques_on_rings_are_one_traction_about_the_axis() -> None:
         assert shear[[0, 2]].tolist() == [0.0, 0.0]
         assert -shear[1] * band.area * band.radius == pytest.approx(expected, rel=1e-12)
     assert not turning_traction(model, np.zeros(2))
+
+
+def test_coefficients_outside_their_range_are_refused() -> None:
+    for wrong in (-0.1, 1.1, math.nan):
+        with pytest.raises(ArgumentError, match="friction must be from 0 to 1"):
+            Lug("A", 0.05, STEEL, friction=wrong)
+    lugs = [replace(lug, friction=mu) for lug, mu in zip(LUGS, (0.1, 0.2, 0.15), strict=True)]
+    assert coefficient_words(lugs) == "0.1 to 0.2"
+    assert coefficient_words([replace(lug, friction=0.15) for lug in LUGS]) == "0.15"
 
 
 @pytest.fixture(scope="module")

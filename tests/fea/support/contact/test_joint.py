@@ -20,6 +20,7 @@ from fea.support.lugs.lug import Lug
 from fea.support.support import Solution
 from geometry import Pin, Segment
 from geometry.shape.lug_outline import LugOutline
+from tests.support.each import each
 
 E, NU, D, EYE, HELD, FORCE = 210e9, 0.3, 0.02, 0.05, 0.05, 50e3
 STEEL = Material("steel", E, NU, density=7850.0)
@@ -164,6 +165,20 @@ def test_an_edge_radius_takes_load_from_the_edge() -> None:
         2 * 0.002**2 * (1 - math.pi / 4), rel=1e-6
     )
     assert not sharp.gap(ends).any()
+
+
+@each(
+    ("change", "said"),
+    [
+        ({"outer_diameter": 0.0}, "outer diameter"),
+        ({"clearance": math.nan}, "clearance"),
+        ({"edge_radius": -1.0}, "edge radius"),
+        ({"tilt": -1.0}, "tilt"),
+    ],
+)
+def test_lugs_that_cannot_be(change: dict[str, float], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Lug(**{"connection": "A", "outer_diameter": 0.1, "material": STEEL, **change})  # type: ignore[arg-type]
 
 
 def test_lugs_that_do_not_fit_the_pin(model: ContactModel) -> None:

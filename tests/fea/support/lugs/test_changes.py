@@ -67,6 +67,7 @@ def test_what_changes_nothing_is_left_out() -> None:
         ({"clearance": (2e-5, 1e-5)}, "range-order"),
         ({"stiffness": (2.0, 0.5)}, "range-order"),
         ({"tilt": (math.inf, 0.0)}, "range-order"),
+        ({"stiffness": (0.0, 2.0)}, "not-positive"),
     ],
 )
 def test_impossible_ranges(given: dict[str, tuple[float, float]], code: str) -> None:

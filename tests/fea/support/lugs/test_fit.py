@@ -32,6 +32,38 @@ def test_lugs_come_in_the_order_of_the_bands() -> None:
 @each(
     ("change", "code", "said"),
     [
+        ({"outer_diameter": 0.0}, "not-positive", "lug A: its outer diameter must be positive"),
+        ({"outer_diameter": math.nan}, "not-positive", "outer diameter"),
+        ({"clearance": math.inf}, "not-a-number", "clearance"),
+        ({"edge_radius": -1e-4}, "negative", "edge radius"),
+        ({"edge_radius": math.nan}, "negative", "edge radius"),
+        ({"tilt": -1.0}, "negative", "tilt"),
+        ({"tilt": math.nan}, "negative", "tilt"),
+    ],
+)
+def test_lugs_that_cannot_be(change: dict[str, Any], code: str, said: str) -> None:
+    with pytest.raises(ArgumentError, match=said) as raised:
+        replace(A, **change)
+    assert raised.value.code == code
+
+
+@each("thickness", [0.0, -1e-3, math.nan, math.inf])
+def test_bushings_that_cannot_be(thickness: float) -> None:
+    with pytest.raises(ArgumentError, match="thickness of a bushing") as raised:
+        Bushing(thickness, BRONZE)
+    assert raised.value.code == "not-positive"
+
+
+@each("modulus", [0.0, -1.0, math.nan, math.inf])
+def test_materials_without_a_modulus(modulus: float) -> None:
+    with pytest.raises(ArgumentError, match="Young's modulus") as raised:
+        Material("m", modulus, 0.3)
+    assert raised.value.code == "not-positive"
+
+
+@each(
+    ("change", "code", "said"),
+    [
         ({"outer_diameter": 0.019}, "lug-too-narrow", "0.95 of the pin's"),
         ({"outer_diameter": D}, "lug-too-narrow", "wider than the pin"),
         ({"bushing": Bushing(1e-6, BRONZE)}, "bushing-too-thin", "5e-05 of the pin's diameter"),
