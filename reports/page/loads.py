@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from pinbase.rounding import without_round_off
 from reports.data.mechanics import PeakReaction, ReactionTable
 from reports.data.results import Results
 from reports.data.row import GoverningLoad, PinResult, Units
@@ -64,7 +65,7 @@ def load_part(results: Results, everything: Results) -> dict[str, Any]:
 def largest_force(results: Results) -> str:
     """Return a sentence on the largest force at a connection in any case."""
     peaks = [(table, peak) for table in results.reactions for peak in table.largest]
-    table, peak = max(peaks, key=lambda of: of[1].force)
+    table, peak = max(peaks, key=lambda of: without_round_off(of[1].force))
     body = table.bodies[table.connections.index(peak.connection)]
     when = "" if peak.time is None else f" at t = {short(peak.time)} {results.units.time}"
     on = f"of {body} on the pin at {peak.connection}" if body else f"at {peak.connection}"

@@ -46,5 +46,6 @@ def _columns(curve: FactorCurve) -> list[Column[CurvePoint]]:
         Column("depends_on", lambda p: p.depends_on),
         Column("verdict", lambda p: p.verdict, "", "verdict", numeric=False, rank=1),
         *fields("reason"),
+        Column("value_unit", lambda _: curve.unit),
         Column("stress_unit", lambda _: curve.stress_unit),
     ]  # fmt: skip

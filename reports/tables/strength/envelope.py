@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import inf
 
 from pinbase.counted import counted
+from pinbase.rounding import without_round_off
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
@@ -82,7 +83,7 @@ class CaseRow:
     @property
     def line(self) -> str:
         """The largest utilisation in words, for a case that governs no pin."""
-        most = max(self.cells.values(), key=lambda cell: cell.used or 0.0)
+        most = max(self.cells.values(), key=lambda cell: without_round_off(cell.used or 0.0))
         return f"governs no pin; largest {cell_text(most)}, pin {most.result.pin}"
 
 
@@ -113,7 +114,7 @@ def matrix(results: Results) -> Matrix | None:
     rows = [CaseRow(case, cells, cited.get(case, "")) for case, cells in by_case.items()]
     quiet: list[CaseRow] = []
     if len(rows) > MAX_CASES_IN_SENTENCES:
-        rows.sort(key=lambda row: (row.governs, row.used), reverse=True)
+        rows.sort(key=lambda row: (row.governs, without_round_off(row.used)), reverse=True)
         quiet = [row for row in rows if not row.governs]
     pins = list(dict.fromkeys(row.pin for row in results.pins))
     return Matrix(pins, rows[: len(rows) - len(quiet)], quiet, omitted_note(results))

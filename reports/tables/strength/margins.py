@@ -135,7 +135,7 @@ def governing_table(results: Results) -> Table[MarginRow]:
 def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
     """Return all checks that were made for a row, the worst first, those for comparison last."""
     margins = [margin for margin in pin.worst if margin.used >= 0.0]
-    margins.sort(key=lambda margin: (not margin.governs, -margin.used))
+    margins.sort(key=lambda margin: (not margin.governs, -margin.rank))
     rows = (PinMargin(pin.pin, pin.case, margin) for margin in margins)
     return _shown(rows, results, without=("pin", "case"))
 
