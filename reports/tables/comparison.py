@@ -76,7 +76,7 @@ def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
 
 def inputs_table(comparison: RunComparison) -> Table[ValuePair]:
     """Return the input values that differ, by key."""
-    return _pairs("input", comparison.inputs or ())
+    return _pairs("input", comparison.inputs)
 
 
 def versions_table(comparison: RunComparison) -> Table[ValuePair]:
