@@ -94,7 +94,6 @@ def _apart(*factors: float | None) -> list[str]:
 
 def _requirement_changes(comparison: RunComparison) -> str:
     """Return the numbers of requirements that were met or lost, in words."""
-
     counts = {
         change: len(comparison.requirements_that(change))
         for change in (NEWLY_MET, LOST, GONE, LOWERED)
