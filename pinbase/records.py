@@ -17,7 +17,7 @@ import math
 import types
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, is_dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -55,14 +55,20 @@ def in_units(value: T, unit: Unit) -> T:
 
     unit: function that returns the SI value of the unit of a dimension.
     """
+    # Most of the time goes into factors, of which a record has few different ones.
+    return _record_in_units(value, cache(partial(_factor, unit=unit)))
+
+
+def _record_in_units(value: T, factor: Unit) -> T:
+    """Return what `in_units` does. factor: SI value of the unit of a product of dimensions."""
     own_dimension = {"own": value.dimension} if hasattr(value, "dimension") else {}
     dimension_of: Mapping[str, str] = getattr(value, "dimension_of", own_dimension)
 
     def own(dimension: str) -> float:
-        return _factor(dimension_of.get(dimension, dimension), unit)
+        return _factor(dimension, lambda part: factor(dimension_of.get(part, part)))
 
     changed = {
-        name: _converted(hint, getattr(value, name), own if dimension_of else unit)
+        name: _converted(hint, getattr(value, name), own if dimension_of else factor)
         for name, hint in _types(type(value)).items()  # type: ignore[arg-type]
         if _has_dimension(hint)
     }
@@ -131,6 +137,7 @@ def _is_named_tuple(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, "_fields")
 
 
+@cache
 def _present(hint: Any) -> Any:
     """Return the type without None, if it is a union with None."""
     if get_origin(hint) in (Union, types.UnionType):
@@ -165,20 +172,20 @@ def _factor(dimension: str, unit: Unit) -> float:
     return product
 
 
-def _converted(hint: Any, value: Any, unit: Unit) -> Any:
-    """Return a value of a type in other units."""
+def _converted(hint: Any, value: Any, factor: Unit) -> Any:
+    """Return a value of a type in other units; arguments as in `_record_in_units`."""
     if value is None or not _has_dimension(hint):
         return value
     hint = _present(hint)
     if get_origin(hint) is Annotated:
-        factor = _factor(get_args(hint)[1], unit)
+        size = factor(get_args(hint)[1])
         # an array keeps its precision
-        return value if isinstance(value, np.ndarray) and factor == 1.0 else value / factor
+        return value if isinstance(value, np.ndarray) and size == 1.0 else value / size
     if get_origin(hint) is tuple:
-        return tuple(_converted(kind, item, unit) for kind, item in _each(hint, value))
+        return tuple(_converted(kind, item, factor) for kind, item in _each(hint, value))
     if isinstance(value, Mapping):
-        return {key: _converted(get_args(hint)[1], item, unit) for key, item in value.items()}
-    return in_units(value, unit)
+        return {key: _converted(get_args(hint)[1], item, factor) for key, item in value.items()}
+    return _record_in_units(value, factor)
 
 
 def _written(value: object, arrays: list[Array]) -> object:

@@ -86,10 +86,13 @@ def plastic_bending(text: CheckText, s: Situation) -> list[Margin]:
         )  # fmt: skip
 
         # A change of the diameter changes all places with this section, and the worst place among
-        # them may change. Only places count that no other exceeds in both moment and shear.
-        alike = np.array([other == section for other in forces.sections])
+        # them may change. Only places count that no other exceeds in both moment and shear (and
+        # some of those with equal moments, which change nothing).
+        distinct = {id(other): other for other in forces.sections}
+        same = {key: other == section for key, other in distinct.items()}
+        alike = np.array([same[id(other)] for other in forces.sections])
         bent, sheared = (forces.moment / M)[:, alike].ravel(), (forces.shear / V)[:, alike].ravel()
-        falling = np.lexsort((-sheared, -bent))
+        falling = np.argsort(-bent)
         before = np.maximum.accumulate(np.append(-1.0, sheared[falling][:-1]))
         front = falling[sheared[falling] > before]
 

@@ -28,7 +28,6 @@ from assess.margin import JOINT_MODEL_BASIS
 from assess.situation import NominalStress, Resists, SectionForces, Situation
 from fea.beam.line_load import acting, shares
 from fea.beam.round_section import thinnest_section
-from fea.beam.stress import sample
 from fea.beam.timoshenko import AXIAL, MOMENT, SHEAR, TORQUE, InternalForces, stepped_beam
 from fea.support.records import JointForces
 from pinbase.arrays import ROUND_OFF, Floats, first_largest
@@ -69,7 +68,7 @@ def section_forces(s: Situation) -> tuple[SectionForces, SectionForces]:
     s = replace(s, loads=s.by_formula)
     forces = stepped_beam(s.pin, s.material, acting(s.loads), s.clamps)
     c = shares(forces.loads, s.loads)
-    cells, z = sample(forces)
+    cells, z = forces.samples
     even = _sized(s, forces, cells, z, _values(forces, c, cells, z))
     even = replace(even, exact=partial(_largest, s, forces, c))
     bands = [s.pin.band(name) for name in s.loads.surfaces]
@@ -174,7 +173,7 @@ def _largest(s: Situation, forces: InternalForces, c: Floats, resists: Resists) 
     is a polynomial between two stations.
     """
     component = MOMENT if resists == "modulus" else SHEAR
-    cells, z = sample(forces)
+    cells, z = forces.samples
     values = np.einsum("sk,tpk->spt", forces.inside(cells, z)[:, component], c)
     per = np.array([1.0 / getattr(x, resists) for x in forces.sections])  # Pa per N, or per N m
     size = np.hypot(values[:, 0], values[:, 1]) * per[cells, None]

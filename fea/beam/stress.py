@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fea.beam.round_section import Circle, Radius
 from fea.beam.stress_concentration import Notch, notches
@@ -23,7 +22,6 @@ from geometry import Pin
 from pinbase.arrays import Floats
 
 ZZ, TZ, RZ = 2, 3, 4
-POINTS_PER_CELL = 33  # equally spaced points of a cell; those of largest moment are added
 
 
 @dataclass(frozen=True)
@@ -61,7 +59,7 @@ def beam_stress(
     Raises: as `stepped_beam`.
     """
     forces = stepped_beam(pin, material, loads, clamps)
-    cells, z = sample(forces)
+    cells, z = forces.samples
     inside = forces.inside(cells, z)
     sections = [forces.sections[c] for c in cells]
     nu = material.poisson_ratio
@@ -87,24 +85,6 @@ def beam_stress(
         np.concatenate(points),
         np.concatenate(stress),
     )
-
-
-def sample(forces: InternalForces) -> tuple[NDArray[np.intp], Floats]:
-    """The cells (S,) and z (S,), m, at which stress is read.
-
-    They lie densely in all cells outside the clamps, on both sides of every station, and where the
-    moment of any unit load is largest.
-    """
-    cells, z = [], []
-    for c in forces.free:
-        a, b = forces.stations[c : c + 2]
-        here = set(np.linspace(a, b, POINTS_PER_CELL).tolist())
-        for shear in forces.coefficients[c, :3, SHEAR].T:
-            roots = a + np.polynomial.Polynomial(shear).trim().roots()
-            here |= {float(x.real) for x in roots if abs(x.imag) == 0.0 and a < x.real < b}
-        z += sorted(here)
-        cells += [c] * len(here)
-    return np.array(cells, dtype=np.intp), np.array(z)
 
 
 def section_stress(section: Circle, r: Radius, nu: float) -> Floats:

@@ -21,6 +21,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -37,6 +38,7 @@ SHEAR, MOMENT, AXIAL, TORQUE = range(4)
 # Largest change of a cone's diameter or bore over a cell, of the smallest wall or diameter; chosen
 # by judgement.
 MAX_CONE_CHANGE = 0.01
+POINTS_PER_CELL = 33  # equally spaced points of a cell; those of largest moment are added
 # The quadrature is exact for products of the cubic polynomials of internal forces.
 _GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
 
@@ -75,6 +77,24 @@ class InternalForces:
     def free(self) -> tuple[int, ...]:
         """Numbers of the cells outside the clamps."""
         return tuple(c for s in self.spans for c in range(s.first, s.last))
+
+    @cached_property
+    def samples(self) -> tuple[NDArray[np.intp], Floats]:
+        """The cells (S,) and z (S,), m, at which stress is read.
+
+        They lie densely in all cells outside the clamps, on both sides of every station, and where
+        the moment of any unit load is largest.
+        """
+        cells, z = [], []
+        for c in self.free:
+            a, b = self.stations[c : c + 2]
+            here = set(np.linspace(a, b, POINTS_PER_CELL).tolist())
+            for shear in self.coefficients[c, :3, SHEAR].T:
+                roots = a + np.polynomial.Polynomial(shear).trim().roots()
+                here |= {float(x.real) for x in roots if abs(x.imag) == 0.0 and a < x.real < b}
+            z += sorted(here)
+            cells += [c] * len(here)
+        return np.array(cells, dtype=np.intp), np.array(z)
 
     def inside(self, cells: NDArray[np.intp], z: Floats) -> Floats:
         """The forces V, M, N, T (S, 4, K) at z (S,), m, each as seen from its cell (S,)."""

@@ -176,17 +176,14 @@ def _set_sizes(gmsh: Any, largest: tuple[float, list[int]], gradings: Iterable[G
 
     largest: largest element size, and the fields, from `_stretch_sizes`.
     """
-    field, geo = gmsh.model.mesh.field, gmsh.model.geo
     far, fields = largest
     for grade in gradings:
         if grade.near >= far:
             continue
-        distance = field.add("Distance")
-        field.setNumbers(distance, "PointsList", [geo.addPoint(*p, 0.0) for p in grade.points])
-        numbers = {"InField": distance, "SizeMin": grade.near, "DistMin": grade.flat}
-        end = grade.flat + (far - grade.near) / grade.growth
-        fields.append(_field(gmsh, "Threshold", numbers | {"SizeMax": far, "DistMax": end}))
-    geo.synchronize()
+        numbers = {"VIn": grade.near, "VOut": far, "Radius": grade.flat}
+        numbers["Thickness"] = (far - grade.near) / grade.growth
+        for r, z in grade.points:
+            fields.append(_field(gmsh, "Ball", numbers | {"XCenter": r, "YCenter": z}))
     set_size(gmsh, fields)
     gmsh.option.setNumber("Mesh.MeshSizeMax", far)
     # Precision of the size along curves: gmsh's default of 1e-9 takes as long as everything else,

@@ -258,6 +258,11 @@ def completion(context: click.Context, shell: str) -> None:
 @JOBS_OPTION
 @click.option("--resume", is_flag=True, help="Resume a size that did not end.")
 @click.option(
+    "--over-ranges",
+    is_flag=True,
+    help="Reach the factor over all ranges of the study, not only as described.",
+)
+@click.option(
     "--least-weight", is_flag=True, help="Vary every dimension independently: the lightest pins."
 )
 @click.option(
@@ -282,7 +287,12 @@ def completion(context: click.Context, shell: str) -> None:
     help="With --least-weight: of missing the factor, by the laws in [vary.parameters].",
 )
 def size(
-    study: Path, fos: float | None, step: str | None, least_weight: bool, **options: Any
+    study: Path,
+    fos: float | None,
+    step: str | None,
+    over_ranges: bool,
+    least_weight: bool,
+    **options: Any,
 ) -> int:
     from pinstress.study.schema.units import to_si
 
@@ -306,7 +316,9 @@ def size(
         )
     if least_weight and connection is not None:
         raise InputError("--scheduler is not for --least-weight", code="contradiction")
-    goal = sizing_goal(loaded, fos, metres)
+    if least_weight and over_ranges:
+        raise InputError("--over-ranges is not for --least-weight", code="contradiction")
+    goal = sizing_goal(loaded, fos, metres, over_ranges)
     if least_weight:
         aim = weight_goal(goal, least_options, metres)
         return lighten_and_write(loaded, aim, probability=least_options.probability, **options)

@@ -43,6 +43,7 @@ from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.data.fields import Field
 from reports.data.results import Results
 from reports.data.row import Units
@@ -127,6 +128,7 @@ def run_and_write(
     most = processes(wanted.jobs)
     cache = user_cache() if wanted.cached else None
     with replacing(directory) as staging:  # from here on a second run into the folder is refused
+        before = inputs(study)
         plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
         tasks = plan.tasks
         warn(*other_warnings(study, tasks), *lost_fit_warnings(study, tasks), *fit_note(study))
@@ -138,6 +140,7 @@ def run_and_write(
             _preload_for(plan, cache)
             outcomes = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, outcomes)
+            require_unchanged(study, before)
             if wanted.vtk != "none":
                 _write_flows(results, staging / "vtk")
                 files = {field_name(row.pin, row.case): row for row in results.pins}

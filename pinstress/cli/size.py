@@ -29,6 +29,7 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -73,7 +74,8 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
         sized, new = _size(plan, sizing, options)
     rows = [_row(study, new, result) for result in sized]
     with unneeded(target):
-        print_sizes(rows, goal.written, units_of(study), console(), sizing.written)
+        units = units_of(study)
+        print_sizes(rows, goal.written, units, console(), sizing.written, goal.over_ranges)
     if not options.quiet:
         close(study, new, target if sizing.written else None)
     missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
@@ -113,6 +115,7 @@ class _Sizing:
     ) -> None:
         self.goal = goal
         self._study, self._target, self._state = study, target, state
+        self._inputs = inputs(study)
         self._pins: dict[str, SizingResult] = {}
         self.written = False
 
@@ -142,7 +145,11 @@ class _Sizing:
         self.written = True
 
     def finish(self, result: SizingResult) -> None:
-        """Save a pin that is sized."""
+        """Save a pin that is sized.
+
+        Raises: InputError if a file of the study has changed, or if nothing can be written.
+        """
+        require_unchanged(self._study, self._inputs)
         self._pins.pop(result.pin, None)  # so that the pin becomes the last in the dictionary
         self._pins[result.pin] = result
         self._state.write(tuple(self.pins))
@@ -175,11 +182,14 @@ class _Sizing:
         return moved(text, self._study.path.parent, self._target.parent).encode()
 
 
-def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGoal:
+def sizing_goal(
+    study: Study, fos: float | None, step: float | None, over_ranges: bool = False
+) -> SizingGoal:
     """Return the goal of sizing: the factor to reach and the diameters to choose from.
 
     fos: the factor, or None for that of the study.
     step: step of diameters, m, instead of the study's series.
+    over_ranges: as in SizingGoal.
 
     Raises: InputError.
     """
@@ -192,7 +202,7 @@ def sizing_goal(study: Study, fos: float | None, step: float | None) -> SizingGo
             "[analysis]",
             code="no-required-factor",
         )
-    return SizingGoal(required, standard_diameters(study.table.size, step), more)
+    return SizingGoal(required, standard_diameters(study.table.size, step), more, over_ranges)
 
 
 def _stated_goal(study: Study) -> tuple[float | None, dict[tuple[str, str], float]]:
@@ -268,6 +278,7 @@ def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:
         why=sized.why or (judged.why if judged else ""),
         limited=sized.limited,
         outcome=NOT_DECIDED if sized.why or judged is None else judged.outcome,
+        least="" if judged is None else judged.least,
     )
 
 

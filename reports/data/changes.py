@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from shlex import quote
 
@@ -48,11 +49,22 @@ def unsized(changes: tuple[Remedy, ...]) -> tuple[Remedy, ...]:
 def command(changes: tuple[Remedy, ...], study: str, required: float | None) -> str:
     """Return the command that sizes the pins for which diameters can be found; empty if none."""
     left_out = unsized(changes)
-    pins = [c.pin for c in changes if c not in left_out]
+    return size_command([c.pin for c in changes if c not in left_out], study, required)
+
+
+def size_command(
+    pins: Sequence[str], study: str, required: float | None, over_ranges: bool = False
+) -> str:
+    """Return the command that sizes pins; empty without any.
+
+    required: the factor that the study requires; None for none.
+    over_ranges: whether over all ranges of the study.
+    """
     if not pins:
         return ""
     fos = "" if required is not None else " --fos 1"
-    return f"pinstress size {as_argument(study)} --pins {quote(','.join(pins))}{fos}"
+    over = " --over-ranges" * over_ranges
+    return f"pinstress size {as_argument(study)} --pins {quote(','.join(pins))}{fos}{over}"
 
 
 def as_argument(path: str) -> str:

@@ -39,8 +39,7 @@ from reports.text.certainty import (
     range_words,
     skipped_checks,
 )
-from reports.text.load_path import names
-from reports.text.overview import actions, decisions, why
+from reports.text.overview import actions, decisions, narrow_ranges, why
 from reports.text.summary import ALL_CONVERGED, caveats
 
 MAX_PEAKS = 5  # pins whose largest stress is given
@@ -178,10 +177,7 @@ def nothing_to_change(lines: Sequence[PinLine]) -> str:
     if any(line.row.max_von_mises is None for line in lines):
         return "First let the pin be solved: the card beside this one says what it lacks."
     if open_ := [x for x in lines if x.outcome == DEPENDS]:
-        pins = list(dict.fromkeys(x.pin for x in open_))
-        text = f"Narrow the ranges on which {names(pins)} depend{'s' * (len(pins) == 1)}"
-        sized = any(x.diameter and x.diameter.whatever for x in open_)
-        return f"{text}{', or take the diameter over the open range' * sized}."
+        return f"{narrow_ranges(list(dict.fromkeys(x.pin for x in open_)))}."
     return "No change is known; the table of each pin has what was found."
 
 

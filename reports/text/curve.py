@@ -37,17 +37,32 @@ def reached_lines(curve: FactorCurve) -> list[str]:
         return ["Required factors differ; each result is by its own."] if judged else []
     lines, where = [], {pin: [r for r in curve.reached if r.pin == pin] for pin in curve.pins}
     for pin, reached in where.items():
-        factors = [p.safety_factor for p in curve.least(pin) if p.safety_factor]
         if reached:
             lines += [_reached(curve, crossing) for crossing in reached]
-        elif factors:
-            all_above = min(factors) >= curve.required
-            state = "throughout" if all_above else "nowhere in this range"
-            open_ = {p.outcome for p in curve.worst(pin)} & {NOT_DECIDED, DEPENDS}
-            if all_above and open_:
-                state += f" as computed, but not every result is safe ({', '.join(sorted(open_))})"
-            lines.append(f"Pin {pin} reaches the required factor {curve.required:g} {state}.")
+        elif any(p.safety_factor for p in curve.least(pin)):
+            lines.append(f"Pin {pin} reaches the required factor {curve.required:g} ")
+            lines[-1] += f"{_where(curve, curve.required, pin)}."
+        if lines and (open_ := _open(curve, curve.required, pin)):
+            lines[-1] = f"{lines[-1][:-1]} as computed, but not every result is safe ({open_})."
     return lines
+
+
+def _where(curve: FactorCurve, required: float, pin: str) -> str:
+    """Return in words where a pin reaches its factor that passes it between no two neighbours."""
+    factors = [p.safety_factor for p in curve.least(pin)]
+    above = {factor >= required for factor in factors if factor}
+    if len(above) > 1:
+        return "at some values, between which there is no factor"
+    if not all(factors):
+        return "at every value with a factor" if True in above else "at no value with a factor"
+    return "throughout" if True in above else "nowhere in this range"
+
+
+def _open(curve: FactorCurve, required: float, pin: str) -> str:
+    """Return the outcomes of values that reach the factor, but are not safe."""
+    above = {p.value for p in curve.least(pin) if (p.safety_factor or 0.0) >= required}
+    rows = (p for p in curve.worst(pin) if p.value in above)
+    return ", ".join(sorted({p.outcome for p in rows} & {NOT_DECIDED, DEPENDS}))
 
 
 def _reached(curve: FactorCurve, crossing: Crossing) -> str:

@@ -11,7 +11,7 @@ from assess.judgement import BELOW_YIELD, DEPENDS, FAILS, NOT_DECIDED, OUTCOME_O
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from pinbase.grouped import grouped
 from pinbase.rounding import rounded_up
-from reports.data.changes import Remedy, command
+from reports.data.changes import Remedy, command, size_command
 from reports.data.decision import largest_factor, limit
 from reports.data.dependence import PRESS_FIT
 from reports.data.overview import GOOD, PinLine, QuietCase, quiet_cases
@@ -29,6 +29,7 @@ from reports.text.lug_advice import lug_advice, lug_peaks
 MAX_NAMED_CASES = 4
 ROUND_OFF = 1e-9
 STRONGER = 3.0  # required over given strength; no steel exceeds it
+OVER_RANGES_TEXT = "With --over-ranges it sizes them over all that is open."
 ESTIMATES_TEXT = (
     "Diameters are estimates: of five pins tried, 0.9 to 1.1 times what pinstress size found."
 )
@@ -99,13 +100,24 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     """
     repairs = [*lug_advice(results, lines), *_exceeded(lines), *_singular(lines)]
     repairs += [*unsized_notes(results), *_loose(results), *_near(lines)]
+    required = largest_factor(results.pins)
     if not results.changes:
-        return Actions(repairs, [], "")
+        open_ = [x.pin for x in lines if x.diameter and x.diameter.whatever]
+        remarks = [f"{narrow_ranges(open_)}, or enlarge the pins over them."] if open_ else []
+        over = size_command(open_, study or results.study, required, over_ranges=True)
+        return Actions(repairs, remarks, over)
     needed = [line for line in lines if line.diameter and line.diameter.needed]
     remarks = [ESTIMATES_TEXT] if needed else []
     remarks += [*_eyes(results, needed), *_other_ways(results, "Or a" if needed else "A")]
-    sizing = command(results.changes, study or results.study, largest_factor(results.pins))
+    sizing = command(results.changes, study or results.study, required)
+    if sizing and any(line.spread for line in needed):
+        remarks.append(OVER_RANGES_TEXT)
     return Actions(repairs, remarks, sizing)
+
+
+def narrow_ranges(pins: Sequence[str]) -> str:
+    """Return the advice to narrow the ranges on which pins depend, without a full stop."""
+    return f"Narrow the ranges on which {names(pins)} depend{'s' * (len(pins) == 1)}"
 
 
 def _undecided(lines: Sequence[PinLine]) -> str:

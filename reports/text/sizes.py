@@ -25,6 +25,7 @@ class SizeRow:
 
     before, after: its distinct diameters; `after` is None if it was not sized.
     factor_before: the lowest factor before, roughly. factor: the lowest in the new study, as text.
+    least: the lowest over all ranges of the study, as text; empty without ranges.
     governs: the governing case of the new study.
     weights: before and after; None without a density.
     slenderness: length over largest diameter under a link.
@@ -46,6 +47,7 @@ class SizeRow:
     stricter: str = ""
     limited: bool = False
     outcome: str = NOT_DECIDED
+    least: str = ""
 
     @property
     def result(self) -> str:
@@ -61,11 +63,13 @@ def print_sizes(
     units: Units,
     console: Console,
     written: bool = True,
+    over_ranges: bool = False,
 ) -> None:
     """Print a row for each pin and the number of pins that reach the factor.
 
     required: None where it is not the same for all pins.
     written: whether a new study was written.
+    over_ranges: whether the pins were sized over all ranges of the study.
     """
     from rich.text import Text
 
@@ -77,7 +81,8 @@ def print_sizes(
         " Lengths and the weights of links are unchanged; check that the links have room for the "
         "new diameters."
     )
-    console.print(Text(f"{outcome}.{unchanged * written}"))
+    more = " --over-ranges finds larger pins that reach it there, too." * (not over_ranges)
+    console.print(Text(f"{outcome}.{more * bool(depending)}{unchanged * written}"))
     for line in _remarks(rows):
         console.print(Text(line))
 
@@ -118,6 +123,7 @@ def sizes_table(rows: Sequence[SizeRow]) -> Table[SizeRow]:
     columns: list[Column[SizeRow]] = [
         *texts("Pin=pin Result=result"),
         read_only("factor", lambda row: row.factor),
+        read_only("over ranges", lambda row: row.least or None, rank=3, drop_if_empty=True),
         read_only("new", lambda row: _joined(row.after) or "unchanged", "length", numeric=False),
         read_only("before", lambda row: _joined(row.before), "length", rank=4, numeric=False),
         read_only("factor before", lambda row: engineering(row.factor_before, 2), rank=5),

@@ -13,6 +13,7 @@ import pytest
 
 from assess.judgement import DEPENDS, FAILS, SAFE
 from fea.support.records import TOGETHER, JointRange, Variation, range_ends
+from pinstress import changed_study, load_study, run
 from reports.data.dependence import depends_on
 from reports.data.headline import JudgedCheck
 from reports.data.overview import PinLine, pin_lines
@@ -29,6 +30,8 @@ from reports.text.certainty import (
     measure_first,
     range_words,
 )
+from reports.text.overview import actions
+from tests.conftest import ROOT
 from tests.silent.test_outcomes import landing
 from tests.support.results.judged_results import row
 from tests.support.results.made_up_joint import make_joint
@@ -230,3 +233,11 @@ def test_what_to_do_about_a_pin_that_depends_is_to_narrow_its_ranges(results: Re
     assert nothing_to_change(lines).startswith("Narrow the ranges on which C depends")
     both = pin_lines(replace(results, pins=tuple(rows), spectrum_margins=()))
     assert nothing_to_change(both).startswith("Narrow the ranges on which C and D depend")
+
+
+def test_a_pin_that_depends_is_told_how_to_be_sized_over_its_ranges() -> None:
+    study = ROOT / "studies" / "clevis.toml"
+    results = run(changed_study(load_study(study), {"analysis.required_safety_factor": 2.2}))
+    assert [p.outcome for p in results.pins] == [DEPENDS]
+    steps = actions(results, pin_lines(results), "studies/clevis.toml")
+    assert steps.command == "pinstress size studies/clevis.toml --pins P --over-ranges"

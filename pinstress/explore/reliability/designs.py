@@ -70,8 +70,8 @@ class Answers:
 
     used: (n, r) utilisation, the reciprocal of the safety factor; NaN where there is no result.
     errors: (n, r) relative error of the stress.
-    deep: (n, r) the larger of `used` and the utilisation by the stress beneath contact with its
-    error. If the second is larger, the outcome of the row depends on it.
+    beneath: (n, r) utilisation by the stress beneath contact with its error; 0 without contact. If
+    it is larger than `used`, the outcome of the row depends on it.
     unbounded: (n, r) whether the governing stress is unbounded; `used` is then that outside the
     singular zones.
     loose: (n, r) whether the pin comes loose at the temperature of the case.
@@ -79,7 +79,7 @@ class Answers:
 
     used: Array
     errors: Array
-    deep: Array
+    beneath: Array
     unbounded: NDArray[np.bool_]
     loose: NDArray[np.bool_]
 
@@ -99,7 +99,12 @@ class Answers:
         unbounded, loose = (
             np.asarray(x.any(axis=1))[:, None] for x in (self.unbounded, self.loose)
         )
-        return Answers(used, errors, self.deep.max(axis=1)[:, None], unbounded, loose)
+        return Answers(used, errors, self.beneath.max(axis=1)[:, None], unbounded, loose)
+
+    @property
+    def deep(self) -> Array:
+        """The larger (n, r) of the utilisation and that by the stress beneath contact."""
+        return np.maximum(self.used, self.beneath)
 
     @property
     def depends(self) -> NDArray[np.bool_]:
@@ -210,7 +215,7 @@ class SolvedDesigns:
                 self.reasons[reason or "no result"] += 1
         singular = np.array([[row.verdict == "singular" for row in rows] for rows in designs])
         loose = np.array([[row.loose for row in rows] for rows in designs])
-        return Answers(used, errors, used * np.maximum(1.0, below), singular, loose)
+        return Answers(used, errors, used * below, singular, loose)
 
 
 def _name(purpose: str, count: int, total: int) -> str:

@@ -19,6 +19,7 @@ from reports.data.row import PinResult
 Array = NDArray[np.float64]
 
 CURVE_POINTS = 80  # points of a distribution
+NO_GROWTH = np.ones((1, 2))
 MIN_SAMPLES_BELOW = 10  # smallest number of weighted samples below a point of a distribution
 
 
@@ -68,13 +69,16 @@ class Sample:
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def deep(
-        self, settings: ReliabilityTable, column: RiskColumn, growths: Array | float = 1.0
+        self, settings: ReliabilityTable, column: RiskColumn, growths: Array = NO_GROWTH
     ) -> Estimate:
         """Return the probability of failure or of dependence on the stress beneath contact.
 
-        growths: factors on the stress of each row over the open ranges.
+        growths: (rows, 2) factors on the stress of each row, and on that beneath contact, over the
+        open ranges.
         """
-        margin = 1.0 - settings.factor * column.of(self.answers.deep * growths)
+        used, beneath = self.answers.used, self.answers.beneath
+        deep = np.maximum(used * growths[:, 0], beneath * growths[:, 1])
+        margin = 1.0 - settings.factor * column.of(deep)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def loose(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
@@ -110,12 +114,12 @@ def risk_of(
     sampled: Sample,
     weighted: Sample | None,
     settings: ReliabilityTable,
-    growths: Array | float = 1.0,
+    growths: Array = NO_GROWTH,
 ) -> Risk:
     """Return the risk of a row by plain and importance sampling.
 
-    growths: (rows,) factors on the stress of each row over the open ranges
-    (open_ranges.growth).
+    growths: (rows, 2) factors on the stress of each row, and on that beneath contact, over the open
+    ranges (open_ranges.growth).
     """
     plain = sampled.probability(settings, row.column)
     by_weights = weighted and weighted.probability(settings, row.column)
@@ -138,7 +142,7 @@ def risk_of(
     )
     best = weighted if weighted and bare.by_weights else sampled
     column, every = row.column, [x.answers for x in (sampled, weighted) if x]
-    grown = np.broadcast_to(growths, sampled.answers.used.shape[1]) != 1.0
+    grown = np.broadcast_to(growths, (sampled.answers.used.shape[1], 2)) != 1.0
 
     def spread(holds: bool | np.bool_, estimate: Callable[[Sample], Estimate]) -> Spread | None:
         """Return the probability that is surer by the two samples; None unless `holds`."""
@@ -154,7 +158,8 @@ def risk_of(
             lambda sample: sample.deep(settings, column),
         ),
         over_open=spread(
-            column.of(grown[None])[0], lambda sample: sample.deep(settings, column, growths)
+            column.of(grown.any(axis=1)[None])[0],
+            lambda sample: sample.deep(settings, column, growths),
         ),
         unbounded=spread(
             any(column.of(x.unbounded).any() for x in every),

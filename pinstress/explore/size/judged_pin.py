@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
-from reports.data.decision import beneath_factor, low_factor
+from pinstress.explore.reliability.open_ranges import growth
+from reports.data.decision import beneath_factor, factor_ends, limit, low_factor
 from reports.data.dependence import PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
 from reports.data.row import PinResult
+from reports.data.unknowns import factor_spread
 from reports.format.numbers import DASH, engineering
-from reports.format.ranges import factor_range
+from reports.format.ranges import factor_range, factor_text
 from reports.format.words import margin_words, over_words
 
 
@@ -26,6 +28,8 @@ class JudgedPin:
     why: the reason why the factor is not shown to be reached; empty if it is.
     outcome: one of the outcomes of assess.judgement, over all checks of the pin.
     cases: each load case with the factor that counts, which includes its error.
+    growth: each of these cases with that factor over the lowest over all ranges of the study.
+    least: the lowest factor over these ranges in any case, as text; empty without ranges.
     """
 
     factor: str
@@ -34,6 +38,8 @@ class JudgedPin:
     why: str
     outcome: str
     cases: tuple[tuple[str, float], ...]
+    growth: tuple[tuple[str, float], ...] = ()
+    least: str = ""
 
 
 def judged_pin(results: Results, pin: str) -> JudgedPin:
@@ -41,13 +47,29 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
     rows = [p for p in results.pins if p.pin == pin and p.safety_factor is not None]
     worst = min(rows, key=lambda p: min(p.safety_factor or 0.0, beneath_factor(p)), default=None)
     why = why_missed(results, pin)
+    counted = [(p, factor) for p in rows if (factor := _counted(p))]
+    lowest = [(p, factor, _lowest_over_ranges(p, factor)) for p, factor in counted]
+    least = min(lowest, key=lambda x: x[2] / limit(x[0]), default=None)
+    open_ = any(p.depends_on or factor_spread(p) for p in rows)
     return JudgedPin(
         *_lowest(worst),
         "" if worst is None else _stricter(worst),
         why,
         _outcome(results, pin, why),
-        tuple((p.case, factor) for p in rows if (factor := _counted(p)) is not None),
+        tuple((p.case, factor) for p, factor in counted),
+        tuple((p.case, factor / low) for p, factor, low in lowest if low > 0.0),
+        factor_text(least[2], limit(least[0])) if least and open_ else "",
     )
+
+
+def _lowest_over_ranges(row: PinResult, factor: float) -> float:
+    """Return the lowest factor of a row over all ranges of the study together.
+
+    factor: of the row as described, as sizing counts it.
+    """
+    on_row, on_beneath = growth(row)
+    of_row = factor_ends(row)[0] if row.verdict != "singular" else row.safety_factor or factor
+    return min(of_row / on_row, beneath_factor(row) / on_beneath)
 
 
 def _outcome(results: Results, pin: str, why: str) -> str:

@@ -186,13 +186,17 @@ def least_weight(
     while True:
         merit = _merit(problem, x, worst(places))
         step, promise = _step(problem, x, places, tangents, radius)
-        if promise <= close:
+        length = float(np.abs(step).max())
+        if promise <= close or radius < MIN_LOG_STEP:
+            # Within a shorter radius a smaller reduction is predicted, at an optimum or not.
+            shortened = radius < FIRST_LOG_STEP and length > 0.99 * radius
+            if promise > close or (shortened and promise > 0.0):
+                why = "not converged: longer steps do not gain what the derivatives predict"
             break
-        if solved >= MAX_SOLUTIONS or radius < MIN_LOG_STEP:
-            why = f"not converged in {solved} solutions" if solved >= MAX_SOLUTIONS else ""
+        if solved >= MAX_SOLUTIONS:
+            why = f"not converged in {solved} solutions"
             break
         tell(f"{solved} solved")
-        length = float(np.abs(step).max())
         solved += 1
         try:
             tried = problem.stresses(x + step)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from types import MappingProxyType
 
 from assess.diameter_law import section_exponent
 from fea.core.peak import Maximum
@@ -15,6 +16,7 @@ from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
 from pinstress.analysis.stored import PinOutcome
+from pinstress.explore.reliability.open_ranges import growth
 from pinstress.explore.size.counted import beneath, why_unsolved
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
@@ -26,6 +28,8 @@ from reports.data.results import Results
 # Cases whose stress is below this share of the largest are solved only until it is decided that
 # they reach the factor
 COUNTING_SHARE = 0.5
+
+NO_GROWTH: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
 Tell = Callable[[str], None]
 
@@ -68,6 +72,7 @@ class SizedStudy:
     required: the factor to reach.
     memo: flexibilities and meshes that trials share.
     multiples: multiples of the factor that requirements demand, by case, as in SizingGoal.
+    over_ranges: whether full solutions count the largest stress over all ranges of the study.
     """
 
     plan: Plan
@@ -77,6 +82,7 @@ class SizedStudy:
     standard: StandardDiameters | None = None
     memo: Memo = field(default_factory=Memo)
     multiples: Mapping[str, float] = field(default_factory=dict)
+    over_ranges: bool = False
 
     def at(self, scale: float, rounded: bool = False) -> Study:
         """Return the study with the pin at a scale.
@@ -148,8 +154,10 @@ class SizedStudy:
         return self._full(answer.trial.scale, plan, [*outcomes, *others])
 
     def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
-        peaks = [row.maximum for outcome in outcomes for row in outcome.rows]
-        answer = _answer(scale, "full", peaks, plan.tasks, None, self.multiples)
+        rows = [row for outcome in outcomes for row in outcome.rows]
+        grown = {row.case: growth(row) for row in rows} if self.over_ranges else {}
+        peaks = [row.maximum for row in rows]
+        answer = _answer(scale, "full", peaks, plan.tasks, None, self.multiples, grown)
         return replace(answer, solution=FullSolution(plan, tuple(outcomes)))
 
     def _plan(self, trial: Study, cases: tuple[str, ...] | None) -> Plan:
@@ -179,11 +187,13 @@ def _answer(
     todo: list[Task],
     tolerance: float | None,
     multiples: Mapping[str, float],
+    grown: Mapping[str, tuple[float, float]] = NO_GROWTH,
 ) -> PinAnswer:
     """Return the result of a pin from its maxima in all cases.
 
     tolerance: as in `design_stresses`.
     multiples: multiples of the factor, by case; the stress is multiplied by them.
+    grown: factors on the stress of the row and on that beneath contact, by case.
 
     Raises: NoSizeError if the pin is not solved.
     """
@@ -203,7 +213,8 @@ def _answer(
     for peak in acting:
         times = multiples.get(peak.case, 1.0)
         of_row, below = design_stresses(peak, tolerance)
-        stresses.append((times * of_row, times * below))
+        on_row, on_below = grown.get(peak.case, (1.0, 1.0))
+        stresses.append((times * on_row * of_row, times * on_below * below))
     row, below = (max(each) for each in zip(*stresses, strict=True))
     largest = max(row, below)
     worst = next(p for p, s in zip(acting, stresses, strict=True) if max(s) == largest)

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from assess.judgement import FAILS, NOT_DECIDED
 from fea.core.peak import Maximum, Verdict
 from geometry import ArgumentError
 from pinstress.analysis.plan import Plan
@@ -43,6 +44,7 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
 
 MAX_QUICK, MAX_FULL = 6, 3  # largest numbers of quick and full solutions of a pin
+MAX_FULL_OVER_RANGES = 6  # since only full solutions show what the stress is over ranges
 # Relative excess over the required factor, with its error, that is accepted. For pins in contact
 # with lugs, a full solution takes ten times as long as a quick one and differs from it by -3.3 to
 # 2.3 % (pins of studies/landing_gear.toml, sized for 2 and 10). For other pins, half of the usual
@@ -94,11 +96,14 @@ class SizingGoal:
 
     multiples: multiples of the factor that requirements of the study demand, by pin and case; 0 for
     no required factor. Empty if the factor applies to all.
+    over_ranges: whether the factor must be reached over all ranges of the study, instead of as
+    described.
     """
 
     required: float
     standard: StandardDiameters | None = None
     multiples: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    over_ranges: bool = False
 
     @property
     def written(self) -> float | None:
@@ -136,7 +141,9 @@ class _Search:
         def tell(doing: str) -> None:
             self.tell(f"{said}: {doing}")
 
-        counting = self.answers[0].counting if self.answers else None
+        # Over ranges another case may count than as described.
+        seen = self.answers if self.sized.over_ranges else self.answers[:1]
+        counting = tuple(dict.fromkeys(case for x in seen for case in x.counting)) or None
         if accuracy == "full":
             answer = self.sized.full(scale, counting or (), tell)
         else:
@@ -172,7 +179,10 @@ def size_pin(
         problem = "no factor is required of it"
     if problem:
         return SizingResult(pin, why=problem)
-    sized = SizedStudy(plan, pin, goal.required, others, goal.standard, multiples=multiples)
+    sized = SizedStudy(
+        plan, pin, goal.required, others, goal.standard,
+        multiples=multiples, over_ranges=goal.over_ranges,
+    )  # fmt: skip
     search = _Search(sized, tell, label or f"pin {pin}")
     result = SizingResult(pin)
     try:
@@ -180,7 +190,8 @@ def size_pin(
         result = replace(result, before=_nominal(plan.study, first.worst))
         result = _verified(search, _quickly(search), result)
     except NoSizeError as error:
-        result = replace(result, why=str(error) + _beneath_note(search.answers))
+        over = "; factors are the lowest over all ranges" * bool(goal.over_ranges and search.full)
+        result = replace(result, why=f"{error}{over}{_beneath_note(search.answers)}")
     except (InputError, ArithmeticError, ArgumentError) as error:
         tried = ", ".join(f"{x.factor:.4g} at {x.scale:.3g}" for x in search.trials) or "none"
         why = f"a trial fails (factors by times its diameters: {tried}): {error}"
@@ -255,11 +266,11 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
     After a full solution that is not accepted, the scale is corrected by a secant, or to the next
     standard diameter.
 
-    Raises: NoSizeError if none of MAX_FULL full solutions reaches the factor.
+    Raises: NoSizeError if none of the permitted full solutions reaches the factor.
     """
     sized, limit = search.sized, largest_scale(search.sized)
     required, aim = sized.required, _aim(sized, "full")
-    for _ in range(MAX_FULL):
+    for _ in range(_max_full(sized)):
         if scale > limit.scale:
             last = search.answers[-1]
             if last.trial.factor < required * (1.0 - QUICK_ERROR):
@@ -274,10 +285,14 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
         if factor < required and scale == limit.scale:
             return _limited(search, limit, result)
         known = [x.trial for x in search.full if (x.trial.factor >= required)]
+        # Quick solutions have the stress as described only.
+        alike = [x.trial for x in search.full] if sized.over_ranges else search.trials
         if sized.standard is not None:
-            scale = _next_standard(sized, scale)
+            # Over ranges the first full solution may be many standard diameters too small.
+            needed = _next(alike, aim) if sized.over_ranges else 0.0
+            scale = max(_next_standard(sized, scale), needed)
         else:
-            scale = _next(search.trials, aim)
+            scale = _next(alike, aim)
             # Stay between the known scales where the scatter of errors would lead out of them.
             most = min((x.scale for x in known), default=math.inf)
             least = max((x.trial.scale for x in search.full if x.trial not in known), default=0.0)
@@ -286,6 +301,10 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
                     break
                 scale = least * (aim / factor)
     return _reached(search, result)
+
+
+def _max_full(sized: SizedStudy) -> int:
+    return MAX_FULL_OVER_RANGES if sized.over_ranges else MAX_FULL
 
 
 def _accepted(answer: PinAnswer, search: _Search) -> bool:
@@ -311,8 +330,14 @@ def _reached(search: _Search, result: SizingResult) -> SizingResult:
     if best is None or best.solution is None:
         last = search.trials[-1]
         raise NoSizeError(
-            f"the factor is not reached in {MAX_FULL} full solutions: with {last.scale:.4g} times "
-            f"its diameters it is {last.factor:.4g}"
+            f"the factor is not reached in {_max_full(sized)} full solutions: with "
+            f"{last.scale:.4g} times its diameters it is {last.factor:.4g}"
+        )
+    judged = judged_pin(best.solution.results, sized.pin)
+    if best.trial.scale < 1.0 and judged.outcome in (FAILS, NOT_DECIDED):
+        raise NoSizeError(
+            f"it is not made smaller, since with {best.trial.scale:.4g} times its diameters "
+            f"{judged.why}"
         )
     others = tuple((name, x) for name, x in sized.others.items() if name != sized.pin)
     return replace(
@@ -320,7 +345,7 @@ def _reached(search: _Search, result: SizingResult) -> SizingResult:
         scale=best.trial.scale,
         factor=best.trial.factor,
         verdict=best.worst.verdict,
-        judged=judged_pin(best.solution.results, sized.pin),
+        judged=judged,
         others=others,
     )
 

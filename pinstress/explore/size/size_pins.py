@@ -133,8 +133,10 @@ def loaded_more(plan: Plan, goal: SizingGoal, sized: Sequence[SizingResult]) -> 
         after = after or all_loads(new, cases)
         multiples = goal.of_pin(result.pin)
         change = changes_of_load(new, result.pin, all_loads(solved, cases), after)
+        growth = dict(result.judged.growth) if goal.over_ranges else {}
         if any(
-            factor / (1.0 + change.get(case, 0.0)) < goal.required * multiples.get(case, 1.0)
+            factor / (growth.get(case, 1.0) * (1.0 + change.get(case, 0.0)))
+            < goal.required * multiples.get(case, 1.0)
             for case, factor in result.judged.cases
         ):
             out.append(result.pin)

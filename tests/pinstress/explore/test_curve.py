@@ -95,6 +95,29 @@ def test_reached_throughout_is_no_more_than_the_results_say() -> None:
     assert reached_lines(of(point(1.0, 10.1), point(2.0, 10.2)))[0].endswith("throughout.")
 
 
+@each(
+    ("factors", "outcome", "expected"),
+    [
+        ((5.0, 20.0), "depends", ") as computed, but not every result is safe (depends)."),
+        ((5.0, None, 20.0), "safe", "at some values, between which there is no factor."),
+        ((None, 20.0), "safe", "at every value with a factor."),
+        ((None, 5.0), "fails", "at no value with a factor."),
+        ((4.0, 5.0), "fails", "nowhere in this range."),
+    ],
+)
+def test_reached_is_said_of_what_is_known(
+    factors: tuple[float | None, ...], outcome: str, expected: str
+) -> None:
+    """With no factor between, one was reached nowhere; above a limit all was as safe as said."""
+    last = len(factors)
+    points = [
+        replace(point(1.0 + k, x), outcome=outcome if k + 1 == last else "fails")
+        for k, x in enumerate(factors)
+    ]
+    (told,) = reached_lines(of(*points))
+    assert told.endswith(expected)
+
+
 def test_a_row_is_of_the_case_that_fails_though_another_has_a_smaller_factor(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -7,8 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fea.support.records import FRICTION, BandContact, JointRange, JointResult, Variation
+from fea.core.places import ContactPlace, Places, SurfacePlace
+from fea.support.records import (
+    FRICTION,
+    TOGETHER,
+    BandContact,
+    JointRange,
+    JointResult,
+    Variation,
+)
+from pinstress.explore.reliability.designs import Answers
 from pinstress.explore.reliability.open_ranges import growth, left_out, with_open_ranges
+from pinstress.explore.reliability.risk import RiskColumn
 from pinstress.explore.sweep.number import Path
 from reports.data.row import LandingRange, PinResult
 from tests.support.each import each
@@ -48,7 +58,7 @@ def row(model: str = "contact") -> PinResult:
 def test_clearances_with_laws_are_not_open(laws: set[Path], expected: float) -> None:
     """They counted twice: by their law, and over the range that a joint without one has."""
     open_row = with_open_ranges(row(), laws, "steel")
-    assert growth(open_row) == pytest.approx(expected)
+    assert growth(open_row) == pytest.approx((expected, 1.0))
     assert open_row.joint is not None
     assert open_row.joint.range is not None
     low, high = open_row.joint.range.max_von_mises
@@ -100,8 +110,65 @@ def test_a_law_describes_what_it_is_of_in_a_landing(
 def test_the_range_of_a_prescribed_support_stays() -> None:
     """Its ends have the error of the foundation, which no variation has alone."""
     laws = {("lug_defaults", "clearance")}
-    assert growth(with_open_ranges(row("foundation"), laws, "steel")) == pytest.approx(1.5)
+    assert growth(with_open_ranges(row("foundation"), laws, "steel"))[0] == pytest.approx(1.5)
+
+
+def in_contact(beneath: float) -> PinResult:
+    """The row with a stress beneath contact."""
+    surface = SurfacePlace(STRESS, 0.0, "converged", (0.0, 0.0, 0.0))
+    contact = ContactPlace(beneath, 0.0, (0.0, 0.0, 0.0), None, 0.0, 0.0, (), ())
+    return with_values(row(), places=Places("surface", surface, None, contact))
+
+
+def over(*variations: Variation) -> JointRange:
+    return JointRange((STRESS, max(x.max_von_mises for x in variations)), variations)
+
+
+@each(
+    ("variations", "expected"),
+    [
+        ([Variation("clearance", "high", 104.0, beneath=135.0)], 1.5),
+        ([Variation("clearance", "high", 104.0, beneath=80.0)], 1.0),
+        ([Variation("clearance", "high", 104.0), Variation(FRICTION, "0.1", 105.0)], 1.0),
+        (
+            [
+                Variation("clearance", "high", 104.0, beneath=108.0),
+                Variation("tilt", "free", 100.0, beneath=99.0),
+            ],
+            1.2 * 1.1,
+        ),
+        (
+            [
+                Variation("clearance", "high", 104.0, beneath=108.0),
+                Variation("tilt", "free", 100.0, beneath=99.0),
+                Variation(TOGETHER, "all", 104.0, beneath=117.0),
+            ],
+            1.3,
+        ),
+    ],
+)
+def test_stress_beneath_contact_has_its_own_growth(
+    variations: list[Variation], expected: float
+) -> None:
+    """It was raised as the row is: a pin was safe whose wide clearance a run finds too large
+    beneath contact.
+    """
+    ranged = over(*variations)
+    made = replace(in_contact(90.0), joint=JointResult("contact", range=ranged))
+    assert growth(made) == pytest.approx((ranged.max_von_mises[1] / STRESS, expected))
+
+
+def test_a_sample_is_raised_beneath_contact_by_its_own_growth() -> None:
+    """At 0.6 of the strength on the surface and 0.7 beneath contact, where clearances raise the
+    first by 1.1 and the second by 1.5.
+    """
+    used, never = np.array([[0.6]]), np.zeros((1, 1), dtype=bool)
+    answers = Answers(used, 0.0 * used, np.array([[0.7]]), never, never)
+    for column in (RiskColumn(0), RiskColumn(None)):
+        assert column.deep(answers) == pytest.approx([0.7])
+        assert column.deep(answers, np.array([[1.1, 1.5]])) == pytest.approx([1.05])
+        assert column.deep(answers, np.array([[1.9, 1.0]])) == pytest.approx([1.14])
 
 
 def test_nothing_is_open_without_a_row() -> None:
-    assert growth(None) == 1.0
+    assert growth(None) == (1.0, 1.0)

@@ -115,6 +115,19 @@ def test_an_impossible_design_is_stepped_back_from() -> None:
     assert np.exp(found.x[0]) == pytest.approx(np.cbrt(3.2 / np.pi), rel=1e-4)
 
 
+@each("close", [5e-4, 1e-2])
+def test_a_gain_that_is_predicted_but_not_found_is_told(close: float) -> None:
+    """The slope says that a larger bore lowers the stress, but it raises it."""
+
+    def at(x: Array) -> tuple[StressPlace, ...]:
+        d, b = x
+        return (StressPlace("wall", float(2.0 * b - 3.0 * d), np.array([-3.0, -2.0])),)
+
+    found = least_weight(Posed(np.array([[2.0, -1.0]]), np.ones(1), at), np.zeros(2), close)
+    assert found.why.startswith("not converged")
+    assert found.optimality.residual > 0.1
+
+
 def test_wus_cantilever_at_a_reliability_index() -> None:
     """The least area at index 3 (Wu et al. 2001, as in test_reliability_mathematics): 9.52025 at
     width 2.44599 and depth 3.89218, where the area hardly changes along the limit.

@@ -310,13 +310,26 @@ def test_a_singular_pin_is_sized_but_nothing_is_claimed(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("study.toml").write_text(QUICK.replace("fillet = 0.4 ", "fillet = 0.0 "))
-    assert run_command_line(["size", "study.toml"]) == 1
+    assert run_command_line(["size", "study.toml", "--fos", "400"]) == 1
     said = capsys.readouterr()
     assert "0 of 1 pin reaches" in said.out
     assert "reached only outside the excluded zones; in landing the stress is singular" in said.err
     found, verdict = factor(Path("study_sized.toml").read_text(), "again")
     assert verdict == "singular"
-    assert 10.0 <= found <= 10.0 * (1.0 + FACTOR_TOLERANCE)
+    assert 400.0 <= found <= 400.0 * (1.0 + FACTOR_TOLERANCE)
+
+
+def test_a_singular_pin_is_not_made_smaller(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is not shown to hold stays as it is: no study is written."""
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(QUICK.replace("fillet = 0.4 ", "fillet = 0.0 "))
+    assert run_command_line(["size", "study.toml"]) == 1
+    said = capsys.readouterr()
+    assert "unchanged" in said.out
+    assert "it is not made smaller, since with 0." in said.err
+    assert not Path("study_sized.toml").exists()
 
 
 @each(
