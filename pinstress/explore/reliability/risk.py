@@ -35,6 +35,13 @@ class RiskColumn:
         """
         return np.asarray(values.max(axis=1) if self.row is None else values[:, self.row])
 
+    def deep(self, answers: Answers, growths: Array = NO_GROWTH) -> Array:
+        """Return the utilisation (n,), or that beneath contact if it is larger.
+
+        growths: (rows, 2) factors on the stress of each row, and on that beneath contact.
+        """
+        return self.of(np.maximum(answers.used * growths[:, 0], answers.beneath * growths[:, 1]))
+
     def error(self, answers: Answers) -> Array:
         """Return the relative errors of the stress, (n,); of the system, those of the row with the
         largest utilisation.
@@ -73,12 +80,9 @@ class Sample:
     ) -> Estimate:
         """Return the probability of failure or of dependence on the stress beneath contact.
 
-        growths: (rows, 2) factors on the stress of each row, and on that beneath contact, over the
-        open ranges.
+        growths: as in RiskColumn.deep, over the open ranges.
         """
-        used, beneath = self.answers.used, self.answers.beneath
-        deep = np.maximum(used * growths[:, 0], beneath * growths[:, 1])
-        margin = 1.0 - settings.factor * column.of(deep)
+        margin = 1.0 - settings.factor * column.deep(self.answers, growths)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def loose(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
