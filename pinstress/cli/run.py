@@ -34,7 +34,7 @@ from pinstress.cli.closing import (
 from pinstress.cli.new_file import require_junit
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
-from pinstress.cli.shared import open_page, warn
+from pinstress.cli.shared import open_page, say, warn
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.model.lost_fits import lost_fit_warnings
@@ -157,7 +157,7 @@ def run_and_write(
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, outcomes)
-        click.echo(f"Report: {directory / REPORT_PAGE}", err=True)
+        say(f"Report: {directory / REPORT_PAGE}")
         _large_tables(directory)
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_unchecked(results), report_disagreements(results))
@@ -269,7 +269,7 @@ def loads_and_write(
     with unneeded(directory):
         print_loads(results, console())
     if not quiet:
-        click.echo(f"Written: {directory}", err=True)
+        say(f"Written: {directory}")
         _large_tables(directory)
     return draw_and_print(directory, plots, False, quiet)
 
@@ -277,10 +277,9 @@ def loads_and_write(
 def _large_tables(directory: Path) -> None:
     """Print the names of tables that are too long for CSV."""
     if names := sorted(path.name for path in directory.glob("*.parquet")):
-        click.echo(
+        say(
             f"More than {MAX_CSV_ROWS:,} rows, so in Parquet (for pandas, polars, DuckDB): "
-            f"{', '.join(names)}",
-            err=True,
+            f"{', '.join(names)}"
         )
 
 

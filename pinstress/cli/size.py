@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from assess.judgement import NOT_DECIDED
 from pinbase.grouped import grouped
 from pinbase.processes.pool import preload, processes
@@ -18,7 +16,7 @@ from pinstress.analysis.gather.gather import units_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.cli.new_file import require_new
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
-from pinstress.cli.shared import connected, resumable
+from pinstress.cli.shared import connected, resumable, say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
@@ -83,7 +81,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
     for (result, why), pins in missed.items():
         of = f"pin{'s' * (len(pins) > 1)} {', '.join(pins)}"
-        click.echo(f"{result}: {of}: {why}.", err=True)
+        say(f"{result}: {of}: {why}.")
     return int(bool(missed))
 
 
@@ -252,13 +250,12 @@ def close(study: Study, new: Study, target: Path | None) -> None:
             old = study.table.pin[name].lug[at].outer_diameter
             if lug.outer_diameter != old and old and lug.outer_diameter:
                 unit = study.system.factor("length")
-                click.echo(
+                say(
                     f"Pin {name}: the eye {at} would be too narrow; its outer diameter is now "
                     f"{short(lug.outer_diameter / unit)} {study.system.length}, was "
-                    f"{short(old / unit)}.",
-                    err=True,
+                    f"{short(old / unit)}."
                 )
-    click.echo(f"Written: {target}" if target else "Nothing is new; no study is written.", err=True)
+    say(f"Written: {target}" if target else "Nothing is new; no study is written.")
 
 
 def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:

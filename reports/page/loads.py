@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,16 +22,6 @@ from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
 
 
-@dataclass(frozen=True)
-class DropPart:
-    """A drop: the clause that requires it, sentences, and tables of its largest values."""
-
-    case: str
-    clause: str
-    words: list[str]
-    grids: list[Grid]
-
-
 def load_part(results: Results, everything: Results) -> dict[str, Any]:
     """Return the reactions, drops and landings of the cases that are shown, and the wheel loads of
     all cases.
@@ -44,12 +34,7 @@ def load_part(results: Results, everything: Results) -> dict[str, Any]:
         "reactions": [(table, _reactions(table, results.units)) for table in results.reactions],
         "without": NO_PIN_NAME,
         "drops": [
-            DropPart(
-                d.case,
-                d.clause,
-                drop_words(d, results),
-                [peak_grid(d, results), impulse_grid(d, results)],
-            )
+            (d, drop_words(d, results), [peak_grid(d, results), impulse_grid(d, results)])
             for d in results.drops
         ],
         "wear": grid_of(wear_table(results), results.units),

@@ -13,7 +13,6 @@ from pinbase.rounding import without_round_off
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
-from reports.data.row import Units
 from reports.format.numbers import DASH, beside_limit
 from reports.tables.column import Column, Table, fields, unit_columns
 
@@ -35,7 +34,6 @@ class EnvelopeRow:
 
     cell: EnvelopeCell
     load: PeakReaction | None
-    units: Units
 
 
 COLUMNS: tuple[Column[EnvelopeRow], ...] = (
@@ -45,17 +43,13 @@ COLUMNS: tuple[Column[EnvelopeRow], ...] = (
     *fields("load?.moment", "moment"),
     *fields("cell.result.max_von_mises", "stress"),
     *fields("cell.result.safety_factor utilisation_high=cell.used cell.outcome cell.governs"),
-    *unit_columns("force length stress"),
+    *unit_columns("force length stress", "cell.result"),
 )
 
 
 def envelope_table(results: Results) -> Table[EnvelopeRow]:
     """Return the largest force and moment on each connection, with the pin's results."""
-    rows = [
-        EnvelopeRow(cell, load, results.units)
-        for cell in envelope(results)
-        for load in cell.largest or (None,)
-    ]
+    rows = [EnvelopeRow(x, load) for x in envelope(results) for load in x.largest or (None,)]
     return Table("envelope", COLUMNS, rows)
 
 
