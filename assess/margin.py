@@ -11,6 +11,7 @@ from assess.work import Work, WorkQuantity
 from pinbase.arrays import ROUND_OFF
 from pinbase.dimensions import Length, Time
 from pinbase.keys import key_part
+from pinbase.rounding import without_round_off
 
 Kind = Literal["hand", "clause", "model", "collapse", "fatigue", "contact"]
 Level = Literal["limit", "ultimate"]
@@ -102,9 +103,14 @@ class Margin:
 
     @property
     def used(self) -> float:
-        """The utilisation for sorting; -1, below all others, where the check was not made."""
+        """The utilisation; -1, below all others, where the check was not made."""
         used = self.utilisation
         return -1.0 if used is None else used
+
+    @property
+    def rank(self) -> float:
+        """The utilisation for sorting."""
+        return without_round_off(self.used)
 
     @property
     def listed_by_hand(self) -> bool:
@@ -126,6 +132,11 @@ class PinMargin:
     def used(self) -> float:
         """The utilisation, as `Margin.used`."""
         return self.margin.used
+
+    @property
+    def rank(self) -> float:
+        """The utilisation for sorting."""
+        return self.margin.rank
 
 
 def for_comparison(margin: Margin) -> Margin:

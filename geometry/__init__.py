@@ -18,28 +18,3 @@ from geometry.shape.profile import Arc, Edge, meridian, sharp_corners
 from geometry.shape.recess import Recess
 from geometry.shape.segment import Segment
 from pinbase.errors import ArgumentError, CodedError
-
-__all__ = [
-    "Arc",
-    "ArgumentError",
-    "Band",
-    "Bottom",
-    "CodedError",
-    "Cut",
-    "CutPin",
-    "Edge",
-    "Flat",
-    "GeometryError",
-    "Hole",
-    "Passage",
-    "Pin",
-    "PinLike",
-    "Recess",
-    "Segment",
-    "Slot",
-    "Vertex",
-    "body_of_revolution",
-    "meridian",
-    "sharp_corners",
-    "vertices",
-]

@@ -3,7 +3,8 @@
 All quantities are in SI units. Of the other packages here, it imports only `pinbase`.
 """
 
-from loads.forces.acting import Applied, ForceLaw, Load, Spring, Varying
+from loads.forces.acting import Applied, ForceLaw, Load, Spring
+from loads.forces.corners import Varying
 from loads.forces.curve import ForceTable
 from loads.forces.holding import locked
 from loads.forces.inverse_dynamics import Dynamics, motion_reactions
@@ -13,7 +14,6 @@ from loads.forces.over_time import (
     OverTime,
     PeakForces,
     over_time,
-    peak_forces,
     require_possible,
 )
 from loads.forces.power_balance import energy, ledger
@@ -55,79 +55,3 @@ from loads.tables.grid import FileReading
 from loads.tables.regular_file import MB, FileError, read_regular, require_regular
 from loads.tables.sent_files import noted_files, on_disk, sent_files
 from pinbase.errors import ArgumentError, CodedError
-
-__all__ = [
-    "GROUND",
-    "MB",
-    "Applied",
-    "ArgumentError",
-    "Body",
-    "Clock",
-    "CodedError",
-    "Connection",
-    "ConstantDrive",
-    "CosineDrive",
-    "Course",
-    "CycloidalDrive",
-    "Distance",
-    "Dynamics",
-    "Effort",
-    "FileError",
-    "FileReading",
-    "ForceLaw",
-    "ForceTable",
-    "Gear",
-    "JammingError",
-    "Joint",
-    "JointAxes",
-    "Law",
-    "Layout",
-    "Lever",
-    "Linkage",
-    "LinkageError",
-    "Load",
-    "Measure",
-    "Motion",
-    "MotionBlocked",
-    "OverTime",
-    "Parallel",
-    "PeakForces",
-    "Position",
-    "Rack",
-    "Reactions",
-    "Resolved",
-    "Sharing",
-    "Slider",
-    "Spring",
-    "StateDrive",
-    "TableDrive",
-    "TableError",
-    "Teeth",
-    "Turn",
-    "Varying",
-    "at_rest",
-    "energy",
-    "gear_pair",
-    "given_reactions",
-    "impulse_force",
-    "jump_times",
-    "ledger",
-    "locked",
-    "mobility",
-    "motion_reactions",
-    "move",
-    "noted_files",
-    "on_disk",
-    "over_time",
-    "peak_forces",
-    "rack_and_pinion",
-    "read_reactions",
-    "read_regular",
-    "read_table",
-    "require_possible",
-    "require_regular",
-    "resolved",
-    "sent_files",
-    "table_cases",
-    "tabled_reactions",
-]

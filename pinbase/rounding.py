@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+SORTED_DIGITS = 9  # by which numbers are sorted; further ones may be round-off
 ROUND_OFF = 1e-9  # relative amount by which a value may lie beyond its rounded value
 
 
@@ -17,6 +18,13 @@ def rounded_down(value: float, digits: int = 3) -> float:
     """Return a positive limit that must not be exceeded, rounded down to some digits."""
     last = _last_digit(value, digits)
     return last * math.floor(value / last * (1.0 + ROUND_OFF))
+
+
+def without_round_off(value: float) -> float:
+    """Return a number to sort by: numbers that differ only by round-off, as of one result in other
+    units, become equal and so keep their order.
+    """
+    return float(f"{value:.{SORTED_DIGITS}g}")
 
 
 def _last_digit(value: float, digits: int) -> float:

@@ -42,22 +42,6 @@ if TYPE_CHECKING:
     from pinstress.study.reading.shipped import shipped_studies
 
 __version__ = "0.1.0"
-__all__ = [
-    "Engine",
-    "InputError",
-    "RunResults",
-    "Study",
-    "changed_study",
-    "curve",
-    "load_study",
-    "prepare",
-    "run",
-    "shipped_studies",
-    "solve",
-    "study_from",
-    "sweep",
-]  # fmt: skip
-
 _MODULE_OF = {
     "Engine": "pinstress.analysis.engine",
     "InputError": "pinstress.study.reading.errors",
@@ -73,6 +57,7 @@ _MODULE_OF = {
     "study_from": "pinstress.study.reading.in_python",
     "sweep": "pinstress.explore.sweep.sweep",
 }
+__all__ = [*_MODULE_OF]
 
 
 def __getattr__(name: str) -> Any:

@@ -68,7 +68,7 @@ def cut_cost() -> str:
 
 def measured(kind: str) -> list[str | int]:
     """Return the row of a kind; the memory is that of this whole process."""
-    pin, loads, start = CutPin.of(SHAFT, (KINDS[kind],)), four_point(), time.process_time()
+    pin, loads, start = CutPin(SHAFT, (KINDS[kind],)), four_point(), time.process_time()
     found = solve_pin(pin, STEEL, (), (loads,), Requirement(TOLERANCE))[0]
     spent, peak = time.process_time() - start, found.peak
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3

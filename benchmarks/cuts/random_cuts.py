@@ -101,7 +101,7 @@ def _kind_trial(rng: np.random.Generator, k: int) -> CutTrial:
     if k % 2:
         segments = (Segment(thick, thick, bore, connection="A"), *segments[1:])
     cuts = (_cut(rng, d, thick + rho + 0.5 * shaft, k),)
-    pin = CutPin.of(Pin(f"cut {k}", segments, rho), cuts)
+    pin = CutPin(Pin(f"cut {k}", segments, rho), cuts)
     size = 1e4 * np.array([1.0, 1.0, 3.0])
     force = rng.normal(size=(1, 1, 3)) * size
     couple = rng.normal(size=(1, 1, 3)) * size * d

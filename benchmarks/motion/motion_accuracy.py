@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 
 from benchmarks import ROOT
 from benchmarks.timing import seconds, table
-from loads import Course, Lever, Linkage, Slider, motion_reactions, move, peak_forces
+from loads import Course, Lever, Linkage, Slider, motion_reactions, move
+from loads.forces.over_time import Exerted, ForceHistory
 from loads.forces.reactions import Reactions
 from loads.motion.equations import drive_side
 from loads.motion.planar_equations import PlanarEquations
@@ -56,8 +57,13 @@ def _peaks(at: Callable[[Floats], Reactions], span: float) -> list[tuple[float, 
     refined.
     """
 
+    def exerted(times: Floats) -> Exerted:
+        return Exerted(times, at(times), *np.zeros((2, len(times), 0)))
+
     def resolved(times: Floats) -> Floats:
-        return np.array([p.value for p in peak_forces(times, at).force.values()])
+        first, none = exerted(times), np.empty(0)
+        peaks = ForceHistory.of([first], exerted, none, (1.0, 0.0), moments=True).peaks()
+        return np.array([p.value for p in peaks.force.values()])
 
     exact = resolved(np.linspace(0.0, span, 4001))
     rows: list[tuple[float, ...]] = []

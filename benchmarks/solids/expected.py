@@ -31,9 +31,9 @@ SEED = 7
 IN_OTHER_WAYS = 4  # pins with cuts that are also meshed as whole solids and from files
 SHAFT = Pin("shaft", (Segment(0.03, 0.04, connection="A"), Segment(0.07, 0.04)))
 SMALL = {  # features far smaller than their pin
-    "keyway, radius d / 100": CutPin.of(SHAFT, (Slot(0.004, 0.026, 0.012, 0.005, 0.0, 4e-4),)),
-    "keyway, radius d / 400": CutPin.of(SHAFT, (Slot(0.004, 0.026, 0.012, 0.005, 0.0, 1e-4),)),
-    "hole, d / 400": CutPin.of(SHAFT, (Hole(0.05, 1e-4),)),
+    "keyway, radius d / 100": CutPin(SHAFT, (Slot(0.004, 0.026, 0.012, 0.005, 0.0, 4e-4),)),
+    "keyway, radius d / 400": CutPin(SHAFT, (Slot(0.004, 0.026, 0.012, 0.005, 0.0, 1e-4),)),
+    "hole, d / 400": CutPin(SHAFT, (Hole(0.05, 1e-4),)),
 }
 Make = Callable[[], SolidMesh]
 

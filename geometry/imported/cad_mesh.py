@@ -17,6 +17,7 @@ import numpy as np
 from geometry.imported.body_file import BodyFile
 from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_solid import near
+from geometry.mesh.entities import along, curves_of, grid_on, points_at
 from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import failure, formula_size, gmsh_model, set_size, silence
 from geometry.mesh.gmsh_tetrahedra import collect, repair
@@ -24,6 +25,7 @@ from geometry.mesh.solid_mesh import MeshSize, SolidMesh, sound_mesh
 from geometry.shape.band import GeometryError
 
 MAX_PLANE_CURVATURE = 1e-9  # curvature times the body's size, below which a surface is plane
+QUARTERS = np.linspace(0.0, 1.0, 5)
 INNER_FRACTIONS = np.linspace(0.0, 1.0, 24)[1:-1]  # of a face's parameters, avoiding the middle
 
 
@@ -158,10 +160,10 @@ def _same_surface(gmsh: Any, face: int, whole: list[int], slack: float) -> int:
     The part lies within the bounding box of the whole face, to the distance `slack`, and on it.
     """
     model = gmsh.model
-    around = model.getBoundary([(2, face)], combined=False, oriented=False)
     # The rim alone is not enough: an end face and the side that it closes share it, and both may be
     # splines.
-    x = np.concatenate([_inside(gmsh, face), *(_on(gmsh, curve) for _, curve in around)])
+    rim = (along(gmsh, curve, QUARTERS) for curve in curves_of(gmsh, [face]))
+    x = np.concatenate([_inside(gmsh, face), *rim])
 
     def holds(other: int) -> bool:
         box = np.array(model.getBoundingBox(2, other)).reshape(2, 3)
@@ -182,7 +184,7 @@ def _inside(gmsh: Any, face: int) -> np.ndarray[Any, np.dtype[np.float64]]:
     for share in product(INNER_FRACTIONS, INNER_FRACTIONS):
         at = low + np.array(share) * (high - low)
         if gmsh.model.isInside(2, face, at, parametric=True):
-            return np.reshape(gmsh.model.getValue(2, face, at), (1, 3))
+            return points_at(gmsh, (2, face), at)
     return np.zeros((0, 3))
 
 
@@ -209,13 +211,11 @@ def _set_sizes(gmsh: Any, size: MeshSize, cuts: list[float]) -> None:
 
 def _curvature(gmsh: Any, face: int, body_size: float) -> tuple[float, bool]:
     """Smallest radius of curvature of a face, and whether it is a cylinder about the z-axis."""
-    low, high = gmsh.model.getParametrizationBounds(2, face)
-    u, v = (np.linspace(a, b, 5)[1:-1] for a, b in zip(low, high, strict=True))
-    at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    at = grid_on(gmsh, (2, face), QUARTERS[1:-1])
     largest = max(np.abs(k).max() for k in gmsh.model.getPrincipalCurvatures(face, at.ravel())[:2])
     if largest * body_size < MAX_PLANE_CURVATURE:
         return math.inf, False
-    x = np.reshape(gmsh.model.getValue(2, face, at.ravel()), (-1, 3))
+    x = points_at(gmsh, (2, face), at)
     r = np.hypot(x[:, 0], x[:, 1])
     coaxial = gmsh.model.getType(2, face) == "Cylinder" and np.ptp(r) < 1e-6 * body_size
     return float(1.0 / largest), bool(coaxial and abs(r[0] * largest - 1.0) < 1e-6)
@@ -223,18 +223,11 @@ def _curvature(gmsh: Any, face: int, body_size: float) -> tuple[float, bool]:
 
 def _lies_at(gmsh: Any, curve: int, cuts: list[float], slack: float) -> bool:
     """Whether a curve lies in one of the planes z = `cuts`."""
-    z = _on(gmsh, curve)[:, 2]
+    z = along(gmsh, curve, QUARTERS)[:, 2]
     return any(float(np.abs(z - cut).max()) < slack for cut in cuts)
 
 
 def _reach(gmsh: Any, curve: int) -> float:
     """Largest distance of a curve from the z-axis."""
-    x = _on(gmsh, curve)
+    x = along(gmsh, curve, QUARTERS)
     return float(np.hypot(x[:, 0], x[:, 1]).max())
-
-
-def _on(gmsh: Any, curve: int) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Points on a curve, (5, 3)."""
-    low, high = gmsh.model.getParametrizationBounds(1, curve)
-    at = np.linspace(float(low[0]), float(high[0]), 5)
-    return np.reshape(np.asarray(gmsh.model.getValue(1, curve, at), dtype=float), (-1, 3))

@@ -275,7 +275,7 @@ def _with_recesses(
             gmsh.model.occ.synchronize()
             removed = removed_solids(gmsh, body, pin)
         cuts = tuple(cut for one in removed for cut in one.cuts(pin, size))
-        assert CutPin.of(pin, cuts).volume > 0.0
+        assert CutPin(pin, cuts).volume > 0.0
     except GeometryError as other:
         why = str(other) if other.code == "stands-out" else error.why
         raise _not_turned(file, why) from None
@@ -304,7 +304,7 @@ def _require_volume(file: BodyFile, profile: RecognisedProfile, volume: float) -
         pin = profile.pin(file.name)
         recognised = pin.volume
         if profile.cuts:
-            recognised = CutPin.of(pin, profile.cuts).volume
+            recognised = CutPin(pin, profile.cuts).volume
     except (GeometryError, MeshError) as error:
         raise _not_turned(file, f"as a profile with cuts it is impossible ({error})") from None
     if abs(recognised / volume - 1.0) > VOLUME_TOLERANCE:

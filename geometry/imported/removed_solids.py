@@ -16,7 +16,8 @@ from geometry.imported.recognised_cuts import CutFaces
 from geometry.imported.sampled_face import SampledFace, sampled_face
 from geometry.imported.solid_volume import solid_volume
 from geometry.mesh.cut_pin import CutPin
-from geometry.mesh.cut_solid import BOOLEAN_TOLERANCE, Entity, cut_solid
+from geometry.mesh.cut_solid import BOOLEAN_TOLERANCE, cut_solid
+from geometry.mesh.entities import Entity, along, curves_of, grid_on, points_at
 from geometry.mesh.gmsh_session import MeshError, gmsh_model, silence
 from geometry.mesh.revolve import revolve
 from geometry.shape.band import END_FACES, GeometryError
@@ -55,7 +56,7 @@ class Removed:
         try:
             cuts = CutFaces(self.faces, size).cuts(pin)
             with gmsh_model(pin.name) as gmsh:
-                solid = cut_solid(gmsh, pin, CutPin.of(pin, cuts).cuts)
+                solid = cut_solid(gmsh, pin, CutPin(pin, cuts).cuts)
                 removed = sum(solid_volume(gmsh, e) for e in _lacking(gmsh, solid, pin))
         except (ValueError, MeshError):  # GeometryError is a ValueError
             return (self.recess,)
@@ -105,10 +106,10 @@ def _removed(gmsh: Any, solid: Entity, pin: Pin) -> Removed:
         radius = _rounding(gmsh, solid, tag, x, pin)
         faces.append(_face(f"{'fillet' if radius else 'face'} {len(faces) + 1}", radius, x))
         sampled.append(sampled_face(gmsh, tag, f"face {tag}"))
-        for _, curve in gmsh.model.getBoundary([(2, tag)], combined=False, oriented=False):
+        for curve in curves_of(gmsh, [tag]):
             if curve not in seen:
                 seen.add(curve)
-                points = _along(gmsh, curve)
+                points = along(gmsh, curve, EDGE_FRACTIONS)
                 line = tuple((a, b, c) for a, b, c in points.tolist())
                 (mouth if is_on_outside(pin, points) else inner).append(line)
     every = [p for line in (*mouth, *inner) for p in line]
@@ -145,21 +146,11 @@ def _texts(gmsh: Any, solids: Sequence[Entity]) -> list[str]:
 
 def _points(gmsh: Any, face: int) -> Floats:
     """Points on a face and its edges, (P, 3)."""
-    model = gmsh.model
-    low, high = model.getParametrizationBounds(2, face)
-    u, v = (a + FACE_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))
-    at = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
-    on = [p for p in at.tolist() if model.isInside(2, face, p, parametric=True)]
-    curves = model.getBoundary([(2, face)], combined=False, oriented=False)
-    inside = np.reshape(model.getValue(2, face, np.ravel(on)), (-1, 3)) if on else np.zeros((0, 3))
-    return np.concatenate([inside, *(_along(gmsh, curve) for _, curve in curves)])
-
-
-def _along(gmsh: Any, curve: int) -> Floats:
-    """Points along a curve, (P, 3)."""
-    (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
-    at = low + EDGE_FRACTIONS * (high - low)
-    return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
+    at = grid_on(gmsh, (2, face), FACE_FRACTIONS)
+    on = [gmsh.model.isInside(2, face, p, parametric=True) > 0 for p in at.tolist()]
+    inside = points_at(gmsh, (2, face), at[on])
+    rim = (along(gmsh, curve, EDGE_FRACTIONS) for curve in curves_of(gmsh, [face]))
+    return np.concatenate([inside, *rim])
 
 
 def _face(part: str, radius: float, x: Floats) -> RemovedFace:

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.mesh.entities import along, curves_of, grid_on, points_at
 from pinbase.arrays import Floats
 
 FACE_TOLERANCE = 1e-6  # for equal points, over the body's size, and for equal directions
@@ -100,22 +101,16 @@ class SampledFace:
 
 def sampled_face(gmsh: Any, tag: int, name: str) -> SampledFace:
     """A face of the body in gmsh's model, sampled on a grid of parameters and on its edges."""
-    model = gmsh.model
-    low, high = model.getParametrizationBounds(2, tag)
-    u, v = (a + FACE_GRID_FRACTIONS * (b - a) for a, b in zip(low, high, strict=True))
-    at = np.stack(np.meshgrid(u, v), axis=-1).ravel().tolist()
-    points = np.reshape(model.getValue(2, tag, at), (-1, 3))
-    normals = np.reshape(model.getNormal(tag, at), (-1, 3))
+    at = grid_on(gmsh, (2, tag), FACE_GRID_FRACTIONS)
+    points = points_at(gmsh, (2, tag), at)
+    normals = np.reshape(gmsh.model.getNormal(tag, at.ravel()), (-1, 3))
     length = np.linalg.norm(normals, axis=1)
     inner = (FACE_GRID_FRACTIONS > 0.0) & (FACE_GRID_FRACTIONS < 1.0)
     good = np.isfinite(length) & (length > 0.5) & np.outer(inner, inner).ravel()  # not at a pole
-    rim = [np.zeros((0, 3))]
-    for _, curve in model.getBoundary([(2, tag)], combined=False, oriented=False):
-        first, last = model.getParametrizationBounds(1, curve)
-        along = (first[0] + EDGE_FRACTIONS * (last[0] - first[0])).tolist()
-        rim.append(np.reshape(model.getValue(1, curve, along), (-1, 3)))
-    area = float(model.occ.getMass(2, tag))
-    face = SampledFace(tag, name, points[good], normals[good], np.concatenate(rim), area)
+    lines = (along(gmsh, curve, EDGE_FRACTIONS) for curve in curves_of(gmsh, [tag]))
+    rim = np.concatenate([np.zeros((0, 3)), *lines])
+    area = float(gmsh.model.occ.getMass(2, tag))
+    face = SampledFace(tag, name, points[good], normals[good], rim, area)
     if face.plane:  # the parameters of a plane extend beyond the face
         return face
     return replace(face, rim=np.concatenate([face.rim, points[~good]]))

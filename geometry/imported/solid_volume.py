@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.mesh.entities import curves_of
 from pinbase.arrays import Floats, Ints
 
 EXACT_FACES = frozenset({"Plane", "Cylinder", "Cone", "Sphere", "Torus"})  # gmsh's names
@@ -61,7 +62,7 @@ def _curved_triangles(gmsh: Any, face: int) -> Floats:
     edges, of_side = np.unique(sides, axis=0, return_inverse=True)
     middles = _middles(gmsh, (2, face), x[edges], on_face[edges])
     index = {(a, b): k for k, (a, b) in enumerate(tags[edges].tolist())}
-    for _, curve in gmsh.model.getBoundary([(2, face)], combined=False, oriented=False):
+    for curve in curves_of(gmsh, [face]):
         _, _, ends = mesh.getElements(1, curve)
         for pairs in ends:  # a curve without length, as at a pole, has none
             on_it, x_of_it, along = _nodes(mesh, (1, curve))

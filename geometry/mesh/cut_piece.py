@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from geometry.mesh.cut_solid import Cuts, cut_solid, named_parts, near
+from geometry.mesh.entities import curves_of
 from geometry.mesh.expected import require_few
 from geometry.mesh.gmsh_session import formula_size, gmsh_model
 from geometry.mesh.gmsh_tetrahedra import collect, repair
@@ -236,7 +237,7 @@ def _sizes(
         if not part and name not in ("start", "end") and not name.startswith("mirror ")
         for tag in tags
     ]
-    rims, fields = _curves(gmsh, others), _sizes_of_recesses(gmsh, piece, parts, finer)
+    rims, fields = set(curves_of(gmsh, others)), _sizes_of_recesses(gmsh, piece, parts, finer)
     for name, cut in piece.cuts.items():
         if isinstance(cut, Recess):
             continue
@@ -244,7 +245,7 @@ def _sizes(
         faces = {part: tags for (n, part), tags in parts.items() if n == name}
         radii = {s.part: s.radius for s in cut.surfaces(piece.profile)}
         every = [tag for tags in faces.values() for tag in tags]
-        edges = sorted(rims & _curves(gmsh, every))
+        edges = sorted(rims & set(curves_of(gmsh, every)))
         if not math.isinf(cut.size):
             fields.append(near(gmsh, "CurvesList", edges, h, PIECE_SIZE_GROWTH))
         wall = (PASSAGE_WALL_SIZE_RATIO if isinstance(cut, Passage) else WALL_SIZE_RATIO) * h
@@ -254,12 +255,11 @@ def _sizes(
                 arc = _arc_size(cut, radii[part]) / finer
                 arc = min(arc, wall)
                 fields.append(near(gmsh, "SurfacesList", tags, arc, PIECE_SIZE_GROWTH))
-                fields.append(
-                    near(gmsh, "CurvesList", sorted(_curves(gmsh, tags)), arc, PIECE_SIZE_GROWTH)
-                )
+                edges = sorted(set(curves_of(gmsh, tags)))
+                fields.append(near(gmsh, "CurvesList", edges, arc, PIECE_SIZE_GROWTH))
         # Without rounded corners, the curves between two faces of a cut are sharp inner corners.
         if not any(radii[part] for part in faces):
-            inner = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
+            inner = [curve for curve in set(curves_of(gmsh, every)) if _shared(gmsh, curve, every)]
             if inner and len(faces) > 1:
                 size = SHARP_CORNER_SIZE * piece.across(cut) / finer
                 fields.append(near(gmsh, "CurvesList", inner, size, PIECE_SIZE_GROWTH))
@@ -287,15 +287,15 @@ def _sizes_of_recesses(
             for s in cut.surfaces(piece.profile)
             if s.radius and s.part in own
         ]
-        sharp = [curve for curve in _curves(gmsh, every) if _shared(gmsh, curve, every)]
+        sharp = [curve for curve in set(curves_of(gmsh, every)) if _shared(gmsh, curve, every)]
         corner = edge if rounded else SHARP_CORNER_SIZE * piece.across(cut) * coarser / finer
         for tags, h in ((every, WALL_SIZE_RATIO * edge), *rounded):
             faces.setdefault(_step(min(h, WALL_SIZE_RATIO * edge)), []).extend(tags)
-        for curves_of, h in (
-            (_curves(gmsh, every), edge), (sharp, corner),
-            *((_curves(gmsh, tags), min(h, edge)) for tags, h in rounded),
+        for around, h in (
+            (set(curves_of(gmsh, every)), edge), (sharp, corner),
+            *((set(curves_of(gmsh, tags)), min(h, edge)) for tags, h in rounded),
         ):  # fmt: skip
-            curves.setdefault(_step(h), set()).update(curves_of)
+            curves.setdefault(_step(h), set()).update(around)
     return [
         *(near(gmsh, "SurfacesList", tags, h, PIECE_SIZE_GROWTH) for h, tags in faces.items()),
         *(
@@ -315,9 +315,3 @@ def _shared(gmsh: Any, curve: int, faces: Sequence[int]) -> bool:
     """Whether a curve lies between two of the faces."""
     up, _ = gmsh.model.getAdjacencies(1, curve)
     return len(set(up.tolist()) & set(faces)) > 1
-
-
-def _curves(gmsh: Any, faces: list[int]) -> set[int]:
-    """Tags of the curves that bound faces."""
-    around = gmsh.model.getBoundary([(2, f) for f in faces], combined=False, oriented=False)
-    return {int(curve) for _, curve in around}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,13 +13,12 @@ from geometry.mesh.cut_solid import cut_solid, named_parts
 from geometry.mesh.gmsh_session import gmsh_model
 from geometry.mesh.scale import unit_of_solid
 from geometry.shape.band import Band, GeometryError
-from geometry.shape.features import Cut, marks_of
+from geometry.shape.features import Cut
 from geometry.shape.hole import Hole
-from geometry.shape.milled import Flat, Slot
-from geometry.shape.passage import Passage
 from geometry.shape.pin import Pin
-from geometry.shape.recess import Recess
 from pinbase.errors import Place
+
+KINDS = ("hole", "flat", "slot", "passage", "recess")  # in this order they are cut
 
 
 @dataclass(frozen=True)
@@ -31,49 +31,29 @@ class CutPin:
     """
 
     profile: Pin
-    holes: tuple[Hole, ...] = ()
-    flats: tuple[Flat, ...] = ()
-    slots: tuple[Slot, ...] = ()
-    passages: tuple[Passage, ...] = ()
-    recesses: tuple[Recess, ...] = ()
+    features: Iterable[Cut] = ()
 
     meshed: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        marks, tolerance = marks_of(self.profile), self.profile.tolerance
-        flats = tuple(flat.snapped(marks, tolerance) for flat in self.flats)
-        slots = tuple(slot.snapped(marks, tolerance) for slot in self.slots)
-        object.__setattr__(self, "holes", tuple(cut.within(self.profile) for cut in self.holes))
-        for name, cut in _named(
-            (*self.holes, *flats, *slots, *self.passages, *self.recesses)
-        ).items():
+        profile = self.profile
+        by_kind = sorted(self.features, key=lambda cut: KINDS.index(cut.what))
+        named = _named(tuple(cut.on(profile) for cut in by_kind))
+        for name, cut in named.items():
             what, i = name.split()
-            cut.check(self.profile, f"{what} {i}", (what, int(i)))
-            _require_own_name(self.profile, name, (what, int(i)))
-        for (k, a), (n, b) in combinations(enumerate(self.holes, 1), 2):
+            cut.check(profile, name, (what, int(i)))
+            _require_own_name(profile, name, (what, int(i)))
+        holes = [(name, cut) for name, cut in named.items() if isinstance(cut, Hole)]
+        for (first, a), (second, b) in combinations(holes, 2):
             if (a.z, a.angle, a.offset, a.tilt) != (b.z, b.angle, b.offset, b.tilt):
-                b.check_beside(a, (f"hole {n}", f"hole {k}"), self.profile, ("hole", n))
-        length = self.length
-        object.__setattr__(self, "flats", tuple(cut.past(length, tolerance) for cut in flats))
-        object.__setattr__(self, "slots", tuple(cut.past(length, tolerance) for cut in slots))
-
-    @staticmethod
-    def of(profile: Pin, cuts: Iterable[Cut]) -> CutPin:
-        """The pin with cuts of all kinds; each kind keeps its order."""
-        every = tuple(cuts)
-        return CutPin(
-            profile,
-            tuple(cut for cut in every if isinstance(cut, Hole)),
-            tuple(cut for cut in every if isinstance(cut, Flat)),
-            tuple(cut for cut in every if isinstance(cut, Slot)),
-            tuple(cut for cut in every if isinstance(cut, Passage)),
-            tuple(cut for cut in every if isinstance(cut, Recess)),
-        )
+                b.check_beside(a, (second, first), profile, ("hole", int(second.split()[1])))
+        features = tuple(cut.past(profile) for cut in named.values())
+        object.__setattr__(self, "features", features)
 
     @cached_property
     def cuts(self) -> dict[str, Cut]:
-        """All cuts by their names, such as "hole 1"."""
-        return _named((*self.holes, *self.flats, *self.slots, *self.passages, *self.recesses))
+        """All cuts by their names, such as "hole 1": each kind is numbered in its own order."""
+        return _named(self.features)
 
     @property
     def name(self) -> str:
@@ -144,7 +124,7 @@ class CutPin:
     def scaled(self, factor: float) -> CutPin:
         """The same pin in another unit of length: all lengths times `factor`."""
         cuts = (cut.scaled(factor) for cut in self.cuts.values())
-        return CutPin.of(self.profile.scaled(factor), cuts)
+        return CutPin(self.profile.scaled(factor), cuts)
 
 
 def _require_own_name(profile: Pin, cut: str, at: Place) -> None:
@@ -160,10 +140,10 @@ def _require_own_name(profile: Pin, cut: str, at: Place) -> None:
                 )
 
 
-def _named(cuts: tuple[Cut, ...]) -> dict[str, Cut]:
+def _named(cuts: Iterable[Cut]) -> dict[str, Cut]:
     """The cuts by name, which consists of kind and number."""
-    named: dict[str, Cut] = {}
-    count = dict.fromkeys((cut.what for cut in cuts), 0)
+    count: Counter[str] = Counter()
+    named = {}
     for cut in cuts:
         count[cut.what] += 1
         named[f"{cut.what} {count[cut.what]}"] = cut

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from geometry.mesh.entities import Entity, along, curves_of, grid_on, points_at
 from geometry.mesh.gmsh_session import MeshError, failure, formula_size, silence
 from geometry.mesh.revolve import revolve
 from geometry.shape.band import END_FACES, GeometryError
@@ -25,7 +26,6 @@ from pinbase.arrays import Floats
 
 Cuts = Mapping[str, Cut]  # cuts by name, such as "hole 1"
 Parts = Mapping[tuple[str, str], list[int]]  # face tags by name and part (named_parts)
-Entity = tuple[int, int]
 
 MIRROR_COMPONENTS = {"mirror x": 0, "mirror y": 1}  # the coordinate that vanishes on each plane
 # Relative to the pin's size: largest deviation of a face from the surface that it matches.
@@ -39,7 +39,7 @@ ARC_ELEMENTS, FIRST_ACROSS = 3.0, 4.0
 # rounded to 1e-7, and the solids that it removes end in its surface.
 BOOLEAN_TOLERANCE = 1e-6
 MAX_PART_DISTANCE = 0.2  # of a recess's width: a face at a larger distance is not part of it
-EDGE_SAMPLE_FRACTIONS = (0.0, 0.21, 0.5, 0.77, 1.0)  # of a curve's range of parameters
+SAMPLE_FRACTIONS = np.array([0.0, 0.21, 0.5, 0.77, 1.0])  # of the range of a parameter
 
 
 def cut_solid(gmsh: Any, pin: Pin, cuts: Cuts, sector: float = 2.0 * math.pi) -> Entity:
@@ -168,7 +168,7 @@ def _round_bottom(gmsh: Any, tool: Entity, floor: float, cut: Flat | Slot) -> En
     edges = []
     for _, curve in gmsh.model.getBoundary([tool], recursive=False, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, curve)], oriented=False):
-            x = _along(gmsh, edge)
+            x = along(gmsh, edge, SAMPLE_FRACTIONS)
             across = np.ptp(x[:, 2]) < tolerance or isinstance(cut, Slot)
             if np.abs(x[:, 0] - floor).max() < tolerance and across:
                 edges.append(edge)
@@ -185,7 +185,7 @@ def _round_mouths(gmsh: Any, body: list[Entity], hole: Hole, pin: Pin) -> list[E
     placed, edges = hole.placed(pin, 4.0 * r), set()
     for _, face in gmsh.model.getBoundary(body, oriented=False):
         for _, edge in gmsh.model.getBoundary([(2, face)], oriented=False):
-            x = _along(gmsh, edge)
+            x = along(gmsh, edge, SAMPLE_FRACTIONS)
             on_wall = np.abs(placed.local(x)[0] - hole.diameter / 2.0).max() < tolerance
             if on_wall and np.abs(np.hypot(x[:, 0], x[:, 1]) - r).max() < tolerance:
                 edges.add(int(edge))
@@ -204,13 +204,6 @@ def _unrounded(pin: Pin, hole: Hole, why: str) -> MeshError:
         f"({why.rstrip('.')}); give a mouth_radius of 0.05 to 0.25 of the diameter, or a chamfer",
         failure(why, "mouth-not-rounded"),
     )
-
-
-def _along(gmsh: Any, curve: int) -> Floats:
-    """Points on a curve, (P, 3)."""
-    low, high = gmsh.model.getParametrizationBounds(1, curve)
-    at = [float(low[0] + s * (high[0] - low[0])) for s in EDGE_SAMPLE_FRACTIONS]
-    return np.reshape(gmsh.model.getValue(1, curve, at), (-1, 3))
 
 
 def named_parts(
@@ -298,16 +291,9 @@ def _require_all(pin: Pin, cuts: Cuts, names: Collection[str]) -> None:
 
 def _points(gmsh: Any, face: int) -> Floats:
     """Points on the edges of a face and, on a cylinder, between them, (P, 3)."""
-    model = gmsh.model
-    curves = model.getBoundary([(2, face)], combined=False, oriented=False)
-    points = [_along(gmsh, curve) for _, curve in curves]
-    if model.getType(2, face) == "Cylinder":  # all its edges may also lie on another cylinder
-        low, high = model.getParametrizationBounds(2, face)
-        u, v = np.meshgrid(
-            *(a + np.array(EDGE_SAMPLE_FRACTIONS) * (b - a) for a, b in zip(low, high, strict=True))
-        )
-        at = np.stack([u, v], axis=-1).ravel().tolist()
-        points.append(np.reshape(model.getValue(2, face, at), (-1, 3)))
+    points = [along(gmsh, curve, SAMPLE_FRACTIONS) for curve in curves_of(gmsh, [face])]
+    if gmsh.model.getType(2, face) == "Cylinder":  # its edges may also lie on another cylinder
+        points.append(points_at(gmsh, (2, face), grid_on(gmsh, (2, face), SAMPLE_FRACTIONS)))
     return np.concatenate(points)
 
 
@@ -335,24 +321,19 @@ def grade(
     tags, faces = [], name_faces(parts, cuts)
     for name, cut in cuts.items():
         surfaces = faces[name]
+        edges = sorted(set(curves_of(gmsh, surfaces)))
         if isinstance(cut, Flat):
             h = min(far / 2, math.pi * cut.radius / 2.0 / finer) if cut.radius else far / 2
-            tags.append(near(gmsh, "CurvesList", _edges(gmsh, surfaces), h, growth))
+            tags.append(near(gmsh, "CurvesList", edges, h, growth))
             continue
         h = min(far, math.pi * cut.size / (4.0 * finer))
         tags.append(near(gmsh, "SurfacesList", surfaces, h, growth))
-        tags.append(near(gmsh, "CurvesList", _edges(gmsh, surfaces), h / 2, growth))
+        tags.append(near(gmsh, "CurvesList", edges, h / 2, growth))
         for part in cut.surfaces(pin):
             arc = math.pi / 2.0 * part.radius / (ARC_ELEMENTS * max(1.0, finer / FIRST_ACROSS))
             if part.radius and arc < h and (name, part.part) in parts:
                 tags.append(near(gmsh, "SurfacesList", parts[name, part.part], arc, growth))
     return tags
-
-
-def _edges(gmsh: Any, faces: list[int]) -> list[int]:
-    """Tags of the curves that bound faces, in order."""
-    around = gmsh.model.getBoundary([(2, f) for f in faces], combined=False, oriented=False)
-    return sorted({int(curve) for _, curve in around})
 
 
 def near(gmsh: Any, what: str, tags: list[int], h: float, growth: float) -> int:

@@ -96,6 +96,16 @@ class Cut(ABC):
         """Names of the end faces that the cut cuts, although they are not in its extent."""
         return ()
 
+    def on(self, pin: Pin) -> Self:
+        """The same cut as it is in this pin."""
+        del pin
+        return self
+
+    def past(self, pin: Pin) -> Self:
+        """The same cut, once checked, as far beyond the ends of the pin as makes it simple."""
+        del pin
+        return self
+
     def scaled(self, factor: float) -> Self:
         """The same cut in another unit of length: all lengths times `factor`."""
         return self._with({key: _times(getattr(self, key), factor) for key in self.lengths})

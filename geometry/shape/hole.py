@@ -107,7 +107,7 @@ class Hole(Drilled):
                             tilt=-other.tilt)  # fmt: skip
         return super().like(other, tolerance)
 
-    def within(self, pin: Pin) -> Hole:
+    def on(self, pin: Pin) -> Hole:
         """The same hole with the pin's radius as `outer` if it is oblique."""
         return replace(self, outer=outer_radius(pin, self.z)) if self.tilt else self
 

@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
 import numpy as np
 
-from geometry.shape.features import Cut, Off, Require, SmoothPart, positive, radii, requirement
+from geometry.shape.features import (
+    Cut,
+    Off,
+    Require,
+    SmoothPart,
+    marks_of,
+    positive,
+    radii,
+    requirement,
+)
 from geometry.shape.pin import Pin
 from geometry.shape.tolerance import snapped
 from pinbase.arrays import Floats, Mask
@@ -34,21 +43,22 @@ class Milled(Cut):
         """The same cut with other ends. change: from old to new ends in z, m."""
         return self._with(dict(zip(("z0", "z1"), change(self.z0, self.z1), strict=True)))
 
-    def snapped(self, marks: Collection[float], tolerance: float) -> Self:
-        """The same cut with its ends moved to marks (z, m) within the tolerance (m)."""
-        return self.along(lambda a, b: (snapped(a, marks, tolerance), snapped(b, marks, tolerance)))
+    def on(self, pin: Pin) -> Self:
+        """The same cut with its ends moved to those of bands and segments that it almost meets."""
+        marks, near = marks_of(pin), pin.tolerance
+        return self.along(lambda a, b: (snapped(a, marks, near), snapped(b, marks, near)))
 
-    def past(self, length: float, near: float) -> Self:
+    def past(self, pin: Pin) -> Self:
         """The same cut, extended where it ends at an end of the pin or beyond it.
 
         The rounded ends of the cut are then outside the pin.
-        length: length of the pin, m. near: tolerance, m.
         """
         far = 2.0 * self.radius + (self.size if math.isfinite(self.size) else 0.0)
         if not far:
             return self
-        low = min(self.z0, -far) if self.z0 <= near else self.z0
-        high = max(self.z1, length + far) if self.z1 >= length - near else self.z1
+        low = min(self.z0, -far) if self.z0 <= pin.tolerance else self.z0
+        beyond = self.z1 >= pin.length - pin.tolerance
+        high = max(self.z1, pin.length + far) if beyond else self.z1
         return self.along(lambda a, b: (low, high))
 
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from loads.forces.corners import Kinks, Unsmooth
+from loads.forces.corners import Unsmooth, Varying
 from loads.forces.curve import ForceTable
 from loads.forces.measures import Distance, Measure, Position
 from loads.linkage.linkage import LinkageError
@@ -42,7 +42,7 @@ class Push:
     couple: Floats
 
 
-class Load(Unsmooth[Kinks[Motion]], Protocol):
+class Load(Unsmooth[Varying[Motion]], Protocol):
     """A load on a linkage, known at every instant of a motion."""
 
     def pushes(self, motion: Motion) -> Iterator[Push]:
@@ -60,48 +60,47 @@ def acts(times: Floats, begin: float, end: float) -> Mask:
     return on
 
 
-@dataclass(frozen=True)
-class Varying(Generic[Timed]):
-    """A factor tabulated over a quantity of the motion (`measure`)."""
+@dataclass(frozen=True, kw_only=True)
+class Switched(Generic[Timed]):
+    """A load that acts between two times, and whose size a table can change.
 
-    measure: Measure[Timed]
-    curve: ForceTable
+    times: table of the factor of the load; None for a factor of 1. It need not cover times at which
+    the load does not act.
+    begin, end: times between which the load acts, s.
+    """
+
+    times: Varying[Timed] | None = None
+    begin: float = -math.inf
+    end: float = math.inf
 
     @property
-    def kinks(self) -> tuple[Kinks[Timed], ...]:
-        """The rows of the table."""
-        return (Kinks(self.measure, self.curve),)
+    def kinks(self) -> tuple[Varying[Timed], ...]:
+        """The rows of the factor's table."""
+        return () if self.times is None else (self.times,)
 
+    @property
+    def switches(self) -> tuple[float, ...]:
+        """Times at which the load begins and ends, s."""
+        return tuple(t for t in (self.begin, self.end) if math.isfinite(t))
 
-def factor(motion: Timed, times: Varying[Timed] | None, begin: float, end: float) -> Floats:
-    """Factor of a load at every instant, (T,); at a switch, the factor just before it.
-
-    times: table of the factor; None for a factor of 1.
-    begin, end: times between which the load acts, s; the table need not cover other times.
-    """
-    on, out = acts(motion.times, begin, end), np.zeros(len(motion))
-    if times is None:
-        out[on] = 1.0
-    elif on.any():
-        out[on] = times.curve(times.measure(motion)[0][on])
-    return out
-
-
-def switches(*times: float) -> tuple[float, ...]:
-    """The finite times among those at which a load begins and ends, s."""
-    return tuple(t for t in times if math.isfinite(t))
+    def size(self, motion: Timed) -> Floats:
+        """Factor of the load at every instant, (T,); at a switch, the factor just before it."""
+        on, out = acts(motion.times, self.begin, self.end), np.zeros(len(motion))
+        if self.times is None:
+            out[on] = 1.0
+        elif on.any():
+            out[on] = self.times.curve(self.times.measure(motion)[0][on])
+        return out
 
 
 @dataclass(frozen=True)
-class Applied:
+class Applied(Switched[Motion]):
     """A force on a point of a body and a couple on the body.
 
     at: the point, as drawn, m.
     force, couple: N and N m.
     follows: whether the force turns with the body (it is then stated as drawn); otherwise its
     direction is fixed in world axes.
-    times: table of the factor of force and couple; None for a factor of 1.
-    begin, end: times between which the load acts, s.
     """
 
     body: str
@@ -109,9 +108,6 @@ class Applied:
     force: Point = (0.0, 0.0)
     couple: float = 0.0
     follows: bool = False
-    times: Varying[Motion] | None = None
-    begin: float = -math.inf
-    end: float = math.inf
 
     def along(self, motion: Motion) -> Complex:
         """The force in world axes at every instant, (T,) N."""
@@ -122,20 +118,6 @@ class Applied:
     def pushes(self, motion: Motion) -> Iterator[Push]:
         """The force and couple at every instant; at a switch, their values just before it."""
         yield Push(self.body, self.at, self.along(motion), self.couple * self.size(motion))
-
-    @property
-    def kinks(self) -> tuple[Kinks[Motion], ...]:
-        """The rows of the factor's table."""
-        return () if self.times is None else self.times.kinks
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """Times at which the load begins and ends, s."""
-        return switches(self.begin, self.end)
-
-    def size(self, motion: Motion) -> Floats:
-        """Factor of force and couple at every instant, (T,)."""
-        return factor(motion, self.times, self.begin, self.end)
 
 
 @dataclass(frozen=True)
@@ -164,10 +146,10 @@ class ForceLaw:
             out = out + self.table(x)
         return out if self.damper is None else out + self.damper(rate)
 
-    def kinks(self, measure: Measure[Timed]) -> tuple[Kinks[Timed], ...]:
+    def kinks(self, measure: Measure[Timed]) -> tuple[Varying[Timed], ...]:
         """The rows of the tables, as values of `measure`."""
         tables = ((self.table, False), (self.damper, True))
-        return tuple(Kinks(measure, curve, rate) for curve, rate in tables if curve is not None)
+        return tuple(Varying(measure, curve, rate) for curve, rate in tables if curve is not None)
 
 
 @dataclass(frozen=True)
@@ -181,16 +163,12 @@ class Spring:
     name: str
     between: Distance | Position
     law: ForceLaw
+    switches: ClassVar[tuple[float, ...]] = ()  # it always acts
 
     @property
-    def kinks(self) -> tuple[Kinks[Motion], ...]:
+    def kinks(self) -> tuple[Varying[Motion], ...]:
         """The rows of the law's tables."""
         return self.law.kinks(self.between)
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """An empty tuple: a spring always acts."""
-        return ()
 
     def force(self, motion: Motion) -> Floats:
         """Force (N) or couple (N m), (T,), positive where it increases the length or angle."""

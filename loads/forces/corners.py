@@ -30,10 +30,10 @@ KinksOf = TypeVar("KinksOf", covariant=True)
 
 
 @dataclass(frozen=True)
-class Kinks(Generic[AnyMotion]):
-    """Values of a measure at which a force is not smooth: the knots of a curve.
+class Varying(Generic[AnyMotion]):
+    """A force or factor by a curve over a measure of the motion; the curve's knots are kinks.
 
-    rate: whether the knots are values of the measure's rate instead.
+    rate: whether the curve is over the measure's rate instead.
     """
 
     measure: Measure[AnyMotion]
@@ -55,7 +55,7 @@ class Unsmooth(Protocol[KinksOf]):
         ...
 
 
-def corners_of(course: Followed[R], loads: Sequence[Unsmooth[Kinks[R]]], nodes: Floats) -> Floats:
+def corners_of(course: Followed[R], loads: Sequence[Unsmooth[Varying[R]]], nodes: Floats) -> Floats:
     """Times inside a course at which a drive, load or friction jumps or has a kink, (N,) s.
 
     nodes: (T,) s, increasing; speeds and measures are resolved between the first and the last.
@@ -79,7 +79,7 @@ def _reversals(course: Followed[R], nodes: Floats) -> Floats:
     return np.concatenate(out)
 
 
-def _kinks(course: Followed[R], loads: Sequence[Unsmooth[Kinks[R]]], nodes: Floats) -> Floats:
+def _kinks(course: Followed[R], loads: Sequence[Unsmooth[Varying[R]]], nodes: Floats) -> Floats:
     """Times of a course at which any of the loads has a kink or a jump, (N,) s."""
     kinks = [k for load in loads for k in load.kinks]
     switches = [t for load in loads for t in load.switches]

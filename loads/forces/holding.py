@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,8 @@ from pinbase.errors import NumberInSI
 
 # Relative to the largest force: a force of the wrong sign on a stop up to this size counts as zero.
 OPENING_FORCE_TOLERANCE = 1e-9
+
+ActuatorSet = tuple[tuple[str, ...], Parallel | None]  # names and the rule by which they share
 
 
 @dataclass(frozen=True)
@@ -56,12 +59,10 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     known: dict[str, Slider | Turn] = {s.name: s for s in linkage.sliders}
     known |= {t.name: t for t in linkage.turns}
     actuators = tuple(known[name] for names, _ in sets for name in names)
-    weights = np.zeros((len(motion), len(actuators), len(sets)))
-    first = 0
-    for k, (names, rule) in enumerate(sets):
-        members = slice(first, first + len(names))
-        weights[:, members, k] = _weights(motion, actuators[members], rule)
-        first = members.stop
+    units = [loops.unit(a) for a in actuators]
+    along = [loops.along(a) / loops.unit(a) for a in actuators]
+    rows = np.reshape(along, (len(actuators), loops.columns))
+    weights = weights_of(motion, sets, units, rows)
     if not hold and not linkage.parallel:
         return Holding(actuators, weights, motion.factors)
     if hold:
@@ -69,7 +70,6 @@ def holding(motion: Motion, hold: Sequence[str] = ()) -> Holding:
     # By virtual work, the row of a set is the sum of the rows of its actuators, each weighted by
     # the actuator's force per unit of the multiplier.
     J = loops.jacobian(motion.pose)
-    rows = np.stack([loops.along(a) / loops.unit(a) for a in actuators])
     J[:, J.shape[1] - len(sets) :] = np.swapaxes(weights, 1, 2) @ rows
     factors = Factors(elimination((J != 0.0).any(axis=0)), J.copy())
     if factors.weakest.min() < RANK_TOLERANCE:
@@ -129,13 +129,13 @@ def require_pressed(
 
 def actuator_sets(
     parallel: Sequence[Parallel], named: Sequence[str], hold: bool
-) -> list[tuple[tuple[str, ...], Parallel | None]]:
+) -> list[ActuatorSet]:
     """The sets of actuators that share a multiplier, each with its rule; a single one has no rule.
 
     named: the drives, or if `hold`, the actuators that hold the linkage. For the latter a rule
     applies only if all its members are named.
     """
-    out: list[tuple[tuple[str, ...], Parallel | None]] = []
+    out: list[ActuatorSet] = []
     done = set[str]()
     for name in named:
         if name in done:
@@ -148,21 +148,30 @@ def actuator_sets(
     return out
 
 
-def _weights(motion: Motion, actuators: Sequence[Slider | Turn], rule: Parallel | None) -> Floats:
-    """Forces of a set's A actuators per unit of its multiplier, (T, A), or (A,) if constant."""
-    loops = motion.loops
-    if rule is None:
-        return np.array([loops.unit(actuators[0])])
-    shares = np.array(rule.shares) / max(rule.shares)
-    if rule.by == "areas":
-        return shares
-    # By stiffness: each force is in proportion to stiffness times the actuator's displacement per
-    # unit displacement of the drive.
-    unit = np.zeros_like(motion.speeds)
-    unit[:, next(k for k, d in enumerate(loops.linkage.drives) if d.name in rule.members)] = 1.0
-    rates = motion.factors.solve(drive_side(loops, unit))
-    displacements = np.stack([rates @ loops.along(a) / loops.unit(a) for a in actuators], axis=1)
-    return shares * displacements
+def weights_of(
+    motion: Any, sets: Sequence[ActuatorSet], units: Sequence[float], rows: Floats
+) -> Floats:
+    """Force of each of A actuators, N or N m, per unit of its set's multiplier, (T, A, D).
+
+    motion: a Motion or a SpaceMotion. units: (A,) length per unit of each actuator.
+    rows: (A, n) derivatives of the actuators' values by the coordinates, scaled to lengths.
+    """
+    out, first = np.zeros((len(motion), len(rows), len(sets))), 0
+    for k, (names, rule) in enumerate(sets):
+        members = slice(first, first + len(names))
+        first = members.stop
+        if rule is None:
+            out[:, members, k] = units[members]
+            continue
+        out[:, members, k] = np.array(rule.shares) / max(rule.shares)
+        if rule.by != "areas":
+            # By stiffness: each force is in proportion to stiffness times the actuator's
+            # displacement per unit displacement of the drive.
+            unit = np.zeros_like(motion.speeds)
+            unit[:, next(d for d, n in enumerate(motion.linkage.driven) if n in names)] = 1.0
+            rates = motion.factors.solve(drive_side(motion.equations, unit))
+            out[:, members, k] *= rates @ rows[members].T
+    return out
 
 
 def require_count(degrees: int, hold: Sequence[str], count: int) -> None:

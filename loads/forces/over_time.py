@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 
@@ -93,81 +93,159 @@ class OverTime:
     corners: Floats
 
 
-def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForces:
-    """The largest force and moment of every connection from the first to the last of the samples.
+@dataclass(frozen=True)
+class Exerted:
+    """What joints and drives exert at times (T,), s.
 
-    samples: (T,) s, increasing.
-    at: function that returns the reactions at times (T,) s of the same motion; they must not jump.
+    drive, power: (T, D) N or N m, and W.
     """
-    first = at(samples)
-    forces = [(np.abs(first.forces).max() or 1.0), (np.abs(first.moments).max() or 1.0)]
 
-    def columns(times: Floats) -> Floats:
-        reactions = at(times)
-        parts = (reactions.forces / forces[0], reactions.moments / forces[1])
-        return np.concatenate([p.reshape(len(times), -1) for p in parts], axis=1)
-
-    count = len(first.connections)
-    groups = np.repeat(np.arange(2 * count), 3)
-    return peaks(resolved(samples, columns, groups=groups.tolist()), at, forces)
-
-
-def peaks(components: Resolved, at: Callable[[Floats], Reactions], unit: list[float]) -> PeakForces:
-    """Largest forces and moments from their components over time.
-
-    components: columns fx, fy, fz of every connection, then mx, my, mz, over their units.
-    at: function that returns the reactions at times (T,) s.
-    unit: units of forces and of moments, N and N m; a single unit if there are no moments.
-    """
-    names = at(components.ends[:1]).connections
-    count = len(names)
-    width = 3 * count * len(unit)
-
-    def sizes(values: Floats) -> Floats:
-        return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
-
-    best, when = components.largest(sizes)
-    # Compare the interpolated maximum with the solution at its instant: both differ only at a jump.
-    solved = at(when)
-    both = zip((solved.forces, solved.moments), unit, strict=False)
-    vectors = np.concatenate([vector / size for vector, size in both], axis=1)
-    rows = np.arange(len(when))
-    exact = vectors[rows, rows]
-    limit = components.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
-    size = np.linalg.norm(exact, axis=1)
-    agrees = np.abs(size - best) <= AGREEMENT_TOLERANCE * best
-    value = np.where(agrees, size, best) * np.repeat(unit, count)
-    vector = np.where(agrees[:, None], exact, limit) * unit[0]
-
-    def named(first: int) -> dict[str, Extremum]:
-        peaks = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
-        return {name: Extremum(*peak) for name, peak in zip(names, peaks, strict=False)}
-
-    zero = dict.fromkeys(names, Extremum(0.0, float(components.ends[0])))
-    return PeakForces(
-        named(0),
-        named(count) if len(unit) > 1 else zero,
-        dict(zip(names, vector, strict=False)),
-        components.unresolved,
-    )
+    times: Floats
+    reactions: Reactions
+    drive: Floats
+    power: Floats
 
 
 @dataclass(frozen=True)
-class _Dense:
+class ForceHistory:
     """Forces of a motion, resolved in time by piecewise polynomials.
 
-    quantities: fx, fy, fz of all connections, then drive forces, then drive powers, each divided by
-    its unit below.
-    forces: unit of the forces at connections, N.
+    quantities: fx, fy, fz of all connections, if wanted their mx, my, mz, then drive forces, then
+    drive powers, each divided by its unit below.
+    solve: what is exerted at times (T,) s.
+    units: of the forces and of the moments at connections, N and N m.
     effort, power: (D,) units of the drives' forces (N) or torques (N m) and of their powers (W).
-    corners: times at which something may jump, s.
     """
 
     quantities: Resolved
-    forces: float
+    solve: Callable[[Floats], Exerted]
+    units: tuple[float, ...]
     effort: Floats
     power: Floats
-    corners: Floats
+
+    @classmethod
+    def of(
+        cls,
+        first: Sequence[Exerted],
+        solve: Callable[[Floats], Exerted],
+        corners: Floats,
+        sizes: tuple[float, float],
+        *,
+        moments: bool,
+    ) -> Self:
+        """The forces, resolved between what is exerted at first times.
+
+        first: at the samples and at the nodes of the path. Units come from all of these, so that
+        tolerances are relative to their largest values.
+        corners: times at which something may jump, s.
+        sizes: length scale of the linkage, m, and pace of its motion.
+        """
+        force, moment = (
+            max(float(np.abs(getattr(x.reactions, key)).max(initial=0.0)) for x in first) or 1.0
+            for key in ("forces", "moments")
+        )
+        scale, pace = sizes
+        # Where all joints are spherical, or all loads are couples, either the moments or the forces
+        # are round-off only.
+        both = (max(force, moment / scale), max(moment, force * scale))
+        units = both if moments else (force,)
+        drive, power = (
+            np.max([np.abs(getattr(x, key)).max(axis=0) for x in first], axis=0)
+            for key in ("drive", "power")
+        )
+        effort = np.maximum(drive, MIN_DRIVE_SHARE * units[0] * max(scale, 1.0))
+        power = np.maximum(power, MIN_DRIVE_SHARE * units[0] * pace)
+        power = np.where(power > 0.0, power, 1.0)
+
+        def columns(x: Exerted) -> Floats:
+            both = zip((x.reactions.forces, x.reactions.moments), units, strict=False)
+            parts = (*(values / unit for values, unit in both), x.drive / effort, x.power / power)
+            return np.concatenate([part.reshape(len(x.times), -1) for part in parts], axis=1)
+
+        vectors = len(units) * len(first[0].reactions.connections)
+        each = vectors + np.arange(2 * len(effort))
+        groups = np.concatenate([np.repeat(np.arange(vectors), 3), each])
+        every = np.concatenate([x.times for x in first])
+        times, place = np.unique(every, return_inverse=True)
+        known, start = np.empty((len(times), len(groups))), len(every)
+        for x in reversed(first):  # one after the other, because those of long motions are large
+            start -= len(x.times)
+            known[place[start : start + len(x.times)]] = columns(x)
+        quantities = resolved(
+            times, lambda t: columns(solve(t)), corners, groups=groups.tolist(), known=known
+        )
+        return cls(quantities, solve, units, effort, power)
+
+    def peaks(self) -> PeakForces:
+        """Largest forces and moments of every connection."""
+        components, unit = self.quantities, self.units
+        names = self.solve(components.ends[:1]).reactions.connections
+        count = len(names)
+        width = 3 * count * len(unit)
+
+        def sizes(values: Floats) -> Floats:
+            return np.asarray(np.linalg.norm(values[:, :width].reshape(len(values), -1, 3), axis=2))
+
+        best, when = components.largest(sizes)
+        # Compare the interpolated maximum with the solution at its instant: both differ only at a
+        # jump.
+        solved = self.solve(when).reactions
+        both = zip((solved.forces, solved.moments), unit, strict=False)
+        vectors = np.concatenate([vector / size for vector, size in both], axis=1)
+        rows = np.arange(len(when))
+        exact = vectors[rows, rows]
+        limit = components.interpolate(when)[:, :width].reshape(len(when), -1, 3)[rows, rows]
+        size = np.linalg.norm(exact, axis=1)
+        agrees = np.abs(size - best) <= AGREEMENT_TOLERANCE * best
+        value = np.where(agrees, size, best) * np.repeat(unit, count)
+        vector = np.where(agrees[:, None], exact, limit) * unit[0]
+
+        def named(first: int) -> dict[str, Extremum]:
+            peaks = zip(value[first:].tolist(), when[first:].tolist(), strict=True)
+            return {name: Extremum(*peak) for name, peak in zip(names, peaks, strict=False)}
+
+        zero = dict.fromkeys(names, Extremum(0.0, float(components.ends[0])))
+        return PeakForces(
+            named(0),
+            named(count) if len(unit) > 1 else zero,
+            dict(zip(names, vector, strict=False)),
+            components.unresolved,
+        )
+
+    def efforts(self, samples: Floats, strokes: Floats) -> tuple[Effort, ...]:
+        """Force, power and work of every drive.
+
+        samples: (T,) s, times up to which work is integrated.
+        strokes: (D,) strokes of the drives, m or rad.
+        """
+        effort, power = self.effort, self.power
+        D = len(effort)
+        if not D:  # a structure has no drives
+            return ()
+        drives = self.quantities.quantities(slice(-2 * D, None))
+
+        def forces(values: Floats) -> Floats:
+            return values[:, :D] * effort
+
+        best, when = drives.largest(lambda values: np.abs(forces(values)))
+        exact = np.abs(np.diagonal(self.solve(when).drive))
+        best = np.where(np.abs(exact - best) <= AGREEMENT_TOLERANCE * best, exact, best)
+        mean = drives.mean(forces)
+        mean = np.where(np.abs(mean) > MEAN_ROUND_OFF * best, mean, 0.0)
+        rms = np.sqrt(drives.mean(lambda values: forces(values) ** 2))
+        work = drives.integral(samples, lambda values: values[:, -D:] * power)
+        max_power, power_time = drives.largest(lambda values: np.abs(values[:, -D:] * power))
+        return tuple(
+            Effort(
+                Extremum(float(best[k]), float(when[k])),
+                float(mean[k]),
+                float(rms[k]),
+                Extremum(float(max_power[k]), float(power_time[k])),
+                float(strokes[k]),
+                work[:, k],
+            )
+            for k in range(D)
+        )
 
 
 def require_possible(
@@ -177,7 +255,7 @@ def require_possible(
 
     course, solve, samples: as for `over_time`.
     """
-    solve(_dense(course, solve, samples).quantities.nodes)
+    solve(_history(course, solve, samples)[0].quantities.nodes)
 
 
 def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> OverTime:
@@ -187,111 +265,34 @@ def over_time(course: Course, solve: Callable[[Floats], Dynamics], samples: Dyna
 
     Raises: the errors of `solve`, also where it fails between the samples.
     """
-    d = _dense(course, solve, samples)
-    largest = peaks(d.quantities, lambda times: solve(times).reactions, [d.forces])
-    between = solve(d.quantities.nodes)
+    history, corners = _history(course, solve, samples)
+    largest, between = history.peaks(), solve(history.quantities.nodes)
     angles, condition = lowest_angles(
         course, between.motion.times, transmission_angles, lambda motion: motion.condition
     )
     assert condition is not None
-    positions = np.concatenate([samples.course[0], between.course[0]])
-    strokes = np.ptp(positions, axis=0)
-    drives = DriveHistory(d.quantities, d.effort, d.power)
-    return OverTime(
-        largest,
-        efforts(drives, lambda times: solve(times).drive, samples.motion.times, strokes),
-        angles,
-        condition,
-        max(ledger(samples).violation, ledger(between).violation),
-        d.corners,
+    strokes = np.ptp(np.concatenate([samples.course[0], between.course[0]]), axis=0)
+    efforts = history.efforts(samples.motion.times, strokes)
+    violation = max(ledger(samples).violation, ledger(between).violation)
+    return OverTime(largest, efforts, angles, condition, violation, corners)
+
+
+def _history(
+    course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics
+) -> tuple[ForceHistory, Floats]:
+    """The forces of a motion, resolved between its samples, and the times of its corners, s."""
+
+    def exerted(d: Dynamics) -> Exerted:
+        return Exerted(d.motion.times, d.reactions, d.drive, d.power)
+
+    first, nodes = exerted(samples), course.path.nodes
+    corners = corners_of(course, samples.applied, np.union1d(first.times, nodes))
+    sizes = course.loops.linkage.length_scale, course.pace
+    every = (first, exerted(solve(nodes)))
+    history = ForceHistory.of(
+        every, lambda times: exerted(solve(times)), corners, sizes, moments=False
     )
-
-
-def _dense(course: Course, solve: Callable[[Floats], Dynamics], samples: Dynamics) -> _Dense:
-    """The forces of a motion, resolved between its samples."""
-    # Units come from the samples and the nodes of the path, so that tolerances are relative to the
-    # largest values of both.
-    first = (samples, solve(course.path.nodes))
-    forces = max(float(np.abs(d.reactions.forces).max()) for d in first) or 1.0
-    scale = course.loops.linkage.length_scale
-    drive, power = (
-        np.max([np.abs(getattr(d, key)).max(axis=0) for d in first], axis=0)
-        for key in ("drive", "power")
-    )
-    effort = np.maximum(drive, MIN_DRIVE_SHARE * forces * max(scale, 1.0))
-    power = np.maximum(power, MIN_DRIVE_SHARE * forces * course.pace)
-    power = np.where(power > 0.0, power, 1.0)
-    connections, drives = len(samples.reactions.connections), len(effort)
-
-    def columns(dynamics: Dynamics) -> Floats:
-        r = dynamics.reactions
-        parts = (r.forces / forces, dynamics.drive / effort, dynamics.power / power)
-        return np.concatenate([p.reshape(len(dynamics.motion), -1) for p in parts], axis=1)
-
-    groups = np.concatenate(
-        [np.repeat(np.arange(connections), 3), connections + np.arange(2 * drives)]
-    )
-    times = np.concatenate([d.motion.times for d in first])
-    start, once = np.unique(times, return_index=True)
-    known = np.concatenate([columns(d) for d in first])[once]
-    corners = corners_of(course, samples.applied, start)
-    quantities = resolved(
-        start, lambda times: columns(solve(times)), corners, groups=groups.tolist(), known=known
-    )
-    return _Dense(quantities, forces, effort, power, corners)
-
-
-@dataclass(frozen=True)
-class DriveHistory:
-    """Forces and powers of D drives, resolved in time.
-
-    quantities: the last 2 D columns are forces, then powers, divided by their units below.
-    effort, power: (D,) units of forces (N) or torques (N m) and of powers (W).
-    """
-
-    quantities: Resolved
-    effort: Floats
-    power: Floats
-
-
-def efforts(
-    history: DriveHistory, solve: Callable[[Floats], Floats], samples: Floats, strokes: Floats
-) -> tuple[Effort, ...]:
-    """Force, power and work of every drive.
-
-    history: forces and powers of the drives over time.
-    solve: function that returns the forces (T, D) of the drives at times (T,) s.
-    samples: (T,) s, times up to which work is integrated.
-    strokes: (D,) strokes of the drives, m or rad.
-    """
-    effort, power = history.effort, history.power
-    D = len(effort)
-    if not D:  # a structure has no drives
-        return ()
-    drives = history.quantities.quantities(slice(-2 * D, None))
-
-    def forces(values: Floats) -> Floats:
-        return values[:, :D] * effort
-
-    best, when = drives.largest(lambda values: np.abs(forces(values)))
-    exact = np.abs(np.diagonal(solve(when)))
-    best = np.where(np.abs(exact - best) <= AGREEMENT_TOLERANCE * best, exact, best)
-    mean = drives.mean(forces)
-    mean = np.where(np.abs(mean) > MEAN_ROUND_OFF * best, mean, 0.0)
-    rms = np.sqrt(drives.mean(lambda values: forces(values) ** 2))
-    work = drives.integral(samples, lambda values: values[:, -D:] * power)
-    max_power, power_time = drives.largest(lambda values: np.abs(values[:, -D:] * power))
-    return tuple(
-        Effort(
-            Extremum(float(best[k]), float(when[k])),
-            float(mean[k]),
-            float(rms[k]),
-            Extremum(float(max_power[k]), float(power_time[k])),
-            float(strokes[k]),
-            work[:, k],
-        )
-        for k in range(D)
-    )
+    return history, corners
 
 
 def lowest_angles(

@@ -2,7 +2,7 @@
 
 from loads.landing.drop import Drop, LandingError
 from loads.landing.ground import GroundedWheel, WheelForce
-from loads.landing.landing import Landing, LandingHistory, land
+from loads.landing.landing import Landing, land
 from loads.landing.requirements import (
     DROP_RULES,
     GROUND_RULES,
@@ -12,8 +12,6 @@ from loads.landing.requirements import (
 )
 from loads.landing.strut import GasSpring, LinearSpring, Oil, Strut
 from loads.landing.through import (
-    AppliedOverTime,
-    StrokeDrive,
     Touchdown,
     at_deflection,
     axes,
@@ -25,36 +23,3 @@ from loads.landing.through import (
 from loads.landing.travel import Levered, Telescopic
 from loads.landing.tyre import PowerTyre, TableTyre
 from loads.landing.wheel import Wheel
-
-__all__ = [
-    "DROP_RULES",
-    "GROUND_RULES",
-    "AppliedOverTime",
-    "Drop",
-    "GasSpring",
-    "GroundedWheel",
-    "Landing",
-    "LandingError",
-    "LandingHistory",
-    "Levered",
-    "LinearSpring",
-    "Oil",
-    "PowerTyre",
-    "StrokeDrive",
-    "Strut",
-    "TableTyre",
-    "Telescopic",
-    "Touchdown",
-    "Wheel",
-    "WheelForce",
-    "at_deflection",
-    "axes",
-    "descent_velocity",
-    "effective_mass",
-    "land",
-    "laws",
-    "pushes",
-    "required_velocity",
-    "spin_up_drag",
-    "travel",
-]

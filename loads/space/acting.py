@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
-from loads.forces.acting import ForceLaw, Varying, factor, switches
-from loads.forces.corners import Kinks, Unsmooth
+from loads.forces.acting import ForceLaw, Switched
+from loads.forces.corners import Unsmooth, Varying
 from loads.space.linkage import Vector
 from loads.space.motion import SpaceMotion
 from pinbase.arrays import Floats
@@ -30,7 +29,7 @@ class SpacePush:
     couple: Floats
 
 
-class SpaceLoad(Unsmooth[Kinks[SpaceMotion]], Protocol):
+class SpaceLoad(Unsmooth[Varying[SpaceMotion]], Protocol):
     """A load on a linkage in space, known at every instant of a motion."""
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
@@ -55,15 +54,13 @@ class Coordinate:
 
 
 @dataclass(frozen=True)
-class SpaceForce:
+class SpaceForce(Switched[SpaceMotion]):
     """A force on a point of a body and a couple on the body.
 
     at: the point, as drawn, m.
     force, couple: N and N m.
     follows: whether both turn with the body (they are then stated as drawn); otherwise their
     directions are fixed in world axes.
-    times: table of the factor of force and couple; None for a factor of 1.
-    begin, end: times between which the load acts, s.
     """
 
     body: str
@@ -71,13 +68,10 @@ class SpaceForce:
     force: Vector = (0.0, 0.0, 0.0)
     couple: Vector = (0.0, 0.0, 0.0)
     follows: bool = False
-    times: Varying[SpaceMotion] | None = None
-    begin: float = -math.inf
-    end: float = math.inf
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
         """The force and couple at every instant; at a switch, their values just before it."""
-        size = factor(motion, self.times, self.begin, self.end)
+        size = self.size(motion)
         force, couple = (size[:, None] * np.array(v) for v in (self.force, self.couple))
         if self.follows:
             turn = motion.rotation(self.body)
@@ -87,16 +81,6 @@ class SpaceForce:
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
         """An empty iterator: the force acts on a body."""
         return iter(())
-
-    @property
-    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
-        """The rows of the factor's table."""
-        return () if self.times is None else self.times.kinks
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """Times at which the load begins and ends, s."""
-        return switches(self.begin, self.end)
 
 
 @dataclass(frozen=True)
@@ -109,6 +93,7 @@ class SpaceSpring:
     name: str
     measured: str
     law: ForceLaw
+    switches: ClassVar[tuple[float, ...]] = ()  # it always acts
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:
         """An empty iterator: the force acts along a measured coordinate."""
@@ -120,14 +105,9 @@ class SpaceSpring:
         yield self.measured, self.law(value, rate)
 
     @property
-    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
+    def kinks(self) -> tuple[Varying[SpaceMotion], ...]:
         """The rows of the law's tables."""
         return self.law.kinks(Coordinate(self.measured))
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """An empty tuple: a spring always acts."""
-        return ()
 
 
 def power(motion: SpaceMotion, loads: tuple[SpaceLoad, ...]) -> Floats:

@@ -17,8 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loads.forces.holding import actuator_sets
-from loads.linkage.parts import Parallel
+from loads.forces.holding import ActuatorSet, actuator_sets
 from loads.motion.equations import CLOSING_GEARS, MIN_PARTICIPATION
 from loads.motion.least_squares import Factors, Step, elimination
 from loads.space.conditions import ConditionRows, Gradients, Quantities, Rates, rows_of
@@ -235,7 +234,7 @@ class SpaceEquations:
         return out / self.scale
 
     @cached_property
-    def sets(self) -> list[tuple[tuple[str, ...], Parallel | None]]:
+    def sets(self) -> list[ActuatorSet]:
         """The sets of actuators that share the multiplier of a drive, each with its rule."""
         return actuator_sets(self.linkage.parallel, self.linkage.driven, False)
 

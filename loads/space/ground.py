@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from loads.forces.corners import Kinks
+from loads.forces.corners import Varying
 from loads.space.acting import SpacePush
 from loads.space.linkage import Vector, unit
 from loads.space.motion import SpaceMotion
@@ -151,6 +152,8 @@ class GroundInertia:
     """The inertia and weight that the motion of the ground adds to all bodies, as a load."""
 
     ground: Ground
+    kinks: ClassVar[tuple[Varying[SpaceMotion], ...]] = ()  # the ground moves smoothly
+    switches: ClassVar[tuple[float, ...]] = ()  # the ground moves all the time
 
     def felt(self, motion: SpaceMotion, place: Floats, velocity: Floats) -> Floats:
         """Change of the acceleration of free fall at points, (T, B, 3) m/s^2.
@@ -173,13 +176,3 @@ class GroundInertia:
     def along_measured(self, motion: SpaceMotion) -> Iterator[tuple[str, Floats]]:
         """An empty iterator: the ground's motion acts on bodies."""
         return iter(())
-
-    @property
-    def kinks(self) -> tuple[Kinks[SpaceMotion], ...]:
-        """An empty tuple: the ground moves smoothly."""
-        return ()
-
-    @property
-    def switches(self) -> tuple[float, ...]:
-        """An empty tuple: the ground moves all the time."""
-        return ()

@@ -8,9 +8,8 @@ from functools import cached_property
 
 import numpy as np
 
+from loads.forces.holding import weights_of
 from loads.linkage.drives import Law
-from loads.linkage.parts import Parallel
-from loads.motion.equations import drive_side
 from loads.motion.least_squares import Factors
 from loads.motion.mobility import require_driven
 from loads.motion.motion import Followed, Instants, side_by_side
@@ -52,31 +51,12 @@ class SpaceMotion(Instants[SpaceEquations]):
 
     @cached_property
     def weights(self) -> Floats:
-        """Force of each of A actuators, N or N m, per unit of the multiplier of its set, (T, A, D).
-
-        The actuators of one set divide the load in proportion to their areas (equal pressure), or
-        to stiffness times displacement (springs on rigid links).
-        """
-        sets = self.equations.sets
-        out, first = np.zeros((len(self), len(self.equations.actuators), len(sets))), 0
-        for k, (names, rule) in enumerate(sets):
-            members = slice(first, first + len(names))
-            out[:, members, k] = self._shares(names, rule)
-            first = members.stop
-        return out
-
-    def _shares(self, names: Sequence[str], rule: Parallel | None) -> Floats:
-        """Forces of a set's actuators per unit of its multiplier, (T, A), or (A,)."""
+        """Force of each of A actuators, N or N m, per unit of its set's multiplier, (T, A, D)."""
         equations = self.equations
-        if rule is None:
-            return np.array([equations.unit_of(names[0])])
-        shares = np.array(rule.shares) / max(rule.shares)
-        if rule.by == "areas":
-            return shares
-        unit = np.zeros_like(self.speeds)
-        unit[:, next(k for k, d in enumerate(self.linkage.driven) if d in names)] = 1.0
-        v = self.factors.solve(drive_side(equations, unit)) / equations.scale
-        return np.asarray(shares * v[:, [equations.column(name) for name in names]])
+        units = [equations.unit_of(name) for name in equations.actuators]
+        columns = [equations.column(name) for name in equations.actuators]
+        rows = np.diag(1.0 / equations.scale)[columns]
+        return weights_of(self, equations.sets, units, rows)
 
     @property
     def actuated(self) -> tuple[Floats, Floats, Floats]:

@@ -8,10 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from loads.forces.over_time import MIN_DRIVE_SHARE, DriveHistory, Effort, PeakForces, efforts, peaks
+from loads.forces.over_time import Effort, Exerted, ForceHistory, PeakForces
 from loads.forces.power_balance import MIN_POWER_SHARE
 from loads.forces.reactions import Reactions
-from loads.motion.refine import resolved
 from loads.space.dynamics import SpaceDynamics
 from loads.space.motion import SpaceCourse
 from pinbase.arrays import Floats
@@ -61,58 +60,18 @@ def space_over_time(
 
     Raises: the errors of `solve`, also where it fails between the samples.
     """
-    first = (samples, solve(course.path.nodes))
-    force, moment = (
-        max(float(np.abs(getattr(s.reactions, key)).max(initial=0.0)) for s in first) or 1.0
-        for key in ("forces", "moments")
-    )
-    scale = course.space.linkage.length_scale
-    # Where all joints are spherical, or all loads are couples, either the moments or the forces are
-    # round-off only.
-    force, moment = max(force, moment / scale), max(moment, force * scale)
-    least = MIN_DRIVE_SHARE * force * max(scale, 1.0)
-    effort = np.maximum(_largest(first, "drive"), least)
-    power = np.maximum(_largest(first, "power"), MIN_DRIVE_SHARE * force * course.pace)
-    power = np.where(power > 0.0, power, 1.0)
 
-    def columns(solved: Solved) -> Floats:
-        r, d = solved.reactions, solved.dynamics
-        parts = (r.forces / force, r.moments / moment, d.drive / effort, d.power / power)
-        return np.concatenate([p.reshape(len(d.motion), -1) for p in parts], axis=1)
+    def exerted(solved: Solved) -> Exerted:
+        d = solved.dynamics
+        return Exerted(d.motion.times, solved.reactions, d.drive, d.power)
 
-    wrenches = 2 * len(samples.reactions.connections)
-    each = wrenches + np.arange(2 * len(effort))
-    groups = np.concatenate([np.repeat(np.arange(wrenches), 3), each])
-    every = np.concatenate([s.dynamics.motion.times for s in first])
-    times, place = np.unique(every, return_inverse=True)
-    known, start = np.empty((len(times), len(groups))), len(every)
-    for solved in reversed(first):  # one after the other, because those of long motions are large
-        start -= len(solved.dynamics.motion)
-        known[place[start : start + len(solved.dynamics.motion)]] = columns(solved)
-    history = resolved(
-        times, lambda t: columns(solve(t)), corners, groups=groups.tolist(), known=known
-    )
-    positions = np.concatenate([s.dynamics.motion.actuated[0] for s in first])
-    strokes = np.ptp(positions, axis=0)
-    drives = efforts(
-        DriveHistory(history, effort, power),
-        lambda t: solve(t).dynamics.drive,
-        samples.dynamics.motion.times,
-        strokes,
-    )
-    least_power = MIN_POWER_SHARE * force * course.pace
-    largest = float(_largest(first, "power").max(initial=least_power)) or 1.0
-    violation = max(float(np.abs(s.dynamics.imbalance).max()) for s in first) / largest
-    return SpaceOverTime(
-        peaks(history, lambda t: solve(t).reactions, [force, moment]),
-        drives,
-        violation,
-        history.nodes,
-    )
-
-
-def _largest(solved: tuple[Solved, ...], key: str) -> Floats:
-    """The largest magnitude of a drive's force or power, (D,)."""
-    return np.asarray(
-        np.max([np.abs(getattr(s.dynamics, key)).max(axis=0) for s in solved], axis=0)
-    )
+    solved = (samples, solve(course.path.nodes))
+    first = tuple(map(exerted, solved))
+    sizes = course.space.linkage.length_scale, course.pace
+    history = ForceHistory.of(first, lambda t: exerted(solve(t)), corners, sizes, moments=True)
+    positions = np.concatenate([x.dynamics.motion.actuated[0] for x in solved])
+    least = MIN_POWER_SHARE * history.units[0] * course.pace
+    largest = max(float(np.abs(x.power).max(initial=least)) for x in first) or 1.0
+    violation = max(float(np.abs(x.dynamics.imbalance).max()) for x in solved) / largest
+    efforts = history.efforts(first[0].times, np.ptp(positions, axis=0))
+    return SpaceOverTime(history.peaks(), efforts, violation, history.quantities.nodes)

@@ -257,8 +257,13 @@ class Engine:
         if varied and not all(map(has_own_range, now)):
             return None
         rows = self._judged(plan, task, now)
-        if same and (widened := [x.case for x in rows if range_may_widen(as_is[x.case][0], x)]):
-            rows = self._judged(plan, task, self._coarse(plan, task, widened))
+        alike = any(same_shape(x, task) for x in tasks)
+        widened = [x.case for x in rows if same and range_may_widen(as_is[x.case][0], x, alike)]
+        if widened:
+            again = self._coarse(plan, task, widened)
+            if not all(has_own_range(x) for x in again if x.case in widened):
+                return None
+            rows = self._judged(plan, task, again)
         return PinOutcome(rows) if rows else None
 
     def _landing_scales(self, plan: Plan, task: Task, case: str) -> bool:

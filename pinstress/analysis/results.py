@@ -23,6 +23,7 @@ from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.extras import EXTRAS, require_fatigue
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from pinstress.study.schema.shown import as_text
 from reports.data.fields import Field
 from reports.data.results import Results
@@ -201,10 +202,11 @@ def run(
 
     A pin whose solution fails has the verdict `failed`.
 
-    Raises: InputError for bad input.
+    Raises: InputError for bad input, and if a file of the study changes meanwhile.
     """
     require_count("jobs", jobs)
     with one_thread():
+        before = inputs(study) if isinstance(study, Study) else {}
         plan = prepare(
             study,
             pins=pins,
@@ -214,7 +216,9 @@ def run(
             memory=memory_limit,
             limit_load=limit_load,
         )
-    return solve(plan, fields=fields, jobs=jobs)
+    results = solve(plan, fields=fields, jobs=jobs)
+    require_unchanged(study, before)
+    return results
 
 
 def solve(

@@ -5,12 +5,11 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-import click
-
 from pinbase.platform import portable
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_into, report_missing
 from pinstress.cli.run import console, progress_bar
+from pinstress.cli.shared import say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.chart.chart import ChartPlan, chart, plan_chart
 from pinstress.explore.chart.measured_process import MeasureLimits, measure
@@ -62,7 +61,7 @@ def chart_and_write(
         if calculix:
             _require_contact(plan)
             if not quiet:
-                click.echo(CALCULIX_TAKES_LONG, err=True)
+                say(CALCULIX_TAKES_LONG)
         with progress_bar(quiet=quiet) as progress:
             result = chart(plan, partial(measure, limits=limits), meshes, runs, progress, calculix)
         chart_table(result).write(staging)
@@ -71,7 +70,7 @@ def chart_and_write(
         print_chart(result, console())
     if not quiet:
         name = CHART_CSV if failed else f"{CHART_NAME}.svg"
-        click.echo(f"Chart: {directory / name}", err=True)
+        say(f"Chart: {directory / name}")
     return max(report_missing(failed), _report_missed(result))
 
 
@@ -88,13 +87,13 @@ def _require_contact(plan: ChartPlan) -> None:
 def _report_missed(result: Chart) -> int:
     tolerance, reference = percent(result.tolerance), result.reference.error
     if reference > result.tolerance:
-        click.echo(
+        say(
             f"Not decided: the reference itself has an error of {percent(reference)}, which "
-            f"exceeds the tolerance of {tolerance}.", err=True,
-        )  # fmt: skip
+            f"exceeds the tolerance of {tolerance}."
+        )
         return 1
     errors = [p.error for p in result.points if p.error is not None]
     if not any(error <= result.tolerance for error in errors):
-        click.echo(f"Not converged: no mesh is within the tolerance of {tolerance}.", err=True)
+        say(f"Not converged: no mesh is within the tolerance of {tolerance}.")
         return 1
     return 0

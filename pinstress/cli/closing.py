@@ -6,13 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import click
-
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, YIELDS
 from fea.core.peak import SingularZone
 from pinbase.grouped import grouped
 from pinstress.analysis.plan import Plan
 from pinstress.analysis.stored import PinOutcome
+from pinstress.cli.shared import say
 from reports.data.headline import judged_checks
 from reports.data.requirements import NOT_CHECKED, requirement_rows
 from reports.data.results import Results
@@ -32,10 +31,9 @@ def report_left_out(results: Results) -> None:
     """Report the forces that were left out because their band is clamped, one line per pin."""
     ways = grouped(((p.pin, p.left_out), p.case) for p in results.pins if p.left_out)
     for (pin, connections), cases in ways.items():
-        click.echo(
+        say(
             f"Pin {pin}, {', '.join(cases)}: the force at {', '.join(connections)} is left out, "
-            "because the pin is clamped there.",
-            err=True,
+            "because the pin is clamped there."
         )
 
 
@@ -44,10 +42,9 @@ def report_reused(plan: Plan, outcomes: list[PinOutcome]) -> None:
     pins = {task.pin.name for task in plan.tasks}
     anew = {t.pin.name for t, row in zip(plan.tasks, outcomes, strict=True) if not row.cached}
     if pins - anew:
-        click.echo(
+        say(
             f"{len(pins - anew)} of {len(pins)} pin{'s' * (len(pins) > 1)} reused from the cache "
-            "(--no-cache solves all again).",
-            err=True,
+            "(--no-cache solves all again)."
         )
 
 
@@ -55,10 +52,9 @@ def report_slow_rows(rows: list[tuple[str, str]]) -> None:
     """Announce before a run the rows that take CalculiX minutes."""
     if rows:
         named = ", ".join(f"{pin} ({case})" for pin, case in rows)
-        click.echo(
+        say(
             "CalculiX solves contact in three dimensions on two meshes, which takes one to ten "
-            f"minutes a row: {named}.",
-            err=True,
+            f"minutes a row: {named}."
         )
 
 
@@ -68,7 +64,7 @@ def report_disagreements(results: Results) -> int:
     for o in opinions:
         if o.complaint:
             what = "No second opinion" if o.failure else "Second opinion differs"
-            click.echo(f"{what}: pin {o.pin} ({o.case}): {o.complaint}.", err=True)
+            say(f"{what}: pin {o.pin} ({o.case}): {o.complaint}.")
     return int(any(o.complaint for o in opinions))
 
 
@@ -78,18 +74,18 @@ def report_violations(results: Results) -> int:
     """
     short = [p for p in results.pins if p.outcome in (FAILS, YIELDS)]
     if short:
-        click.echo(f"Required factor missed: {_listed(short)}.", err=True)
+        say(f"Required factor missed: {_listed(short)}.")
     depending = [p for p in results.pins if p.outcome == DEPENDS]
     for p in depending:
         but = but_words(p.depends_on, results.units, "not")
-        click.echo(f"Safe as described, {but}: {_listed([p])}.", err=True)
+        say(f"Safe as described, {but}: {_listed([p])}.")
     others = [c for c in judged_checks(results) if c.row is None and c.outcome in (FAILS, DEPENDS)]
     for c in others:
         case = f" ({c.case})" if c.case else ""
         what = "Negative margin of safety"
         if c.stated:
             what = f"Requirement {'missed' if c.outcome == FAILS else 'met only as described'}"
-        click.echo(f"{what}: {c.pin}{case}: {c.check}, {spare_words(c)}.", err=True)
+        say(f"{what}: {c.pin}{case}: {c.check}, {spare_words(c)}.")
     return EXIT_REQUIREMENT_MISSED if short or depending or others else 0
 
 
@@ -110,17 +106,16 @@ def report_unchecked(results: Results) -> int:
     for (outcome, title, needs), which in reasons.items():
         why = f" (needs {needs})" if needs else ""
         listed = ", ".join(row.where for row in which)
-        click.echo(f"Requirement {outcome}: {title}{why}: {listed}.", err=True)
+        say(f"Requirement {outcome}: {title}{why}: {listed}.")
     return int(bool(rows))
 
 
 def report_status_zero(results: Results) -> None:
     """Explain the exit status 0 if a pin misses its requirements, or may miss them."""
     if any(check.outcome in (FAILS, YIELDS, DEPENDS) for check in judged_checks(results)):
-        click.echo(
+        say(
             "Exit status 0: the run is complete; --fail-on-miss makes it 4 where a pin misses its "
-            "requirements, or may, as here.",
-            err=True,
+            "requirements, or may, as here."
         )
 
 
@@ -138,7 +133,7 @@ def report_missed(results: Results, decide: bool) -> int:
         and not ((decide or p.minor) and p.decided is not None)
     ]
     for line in _lines(missed):
-        click.echo(line, err=True)
+        say(line)
     near = [
         p
         for p in results.pins
@@ -148,11 +143,9 @@ def report_missed(results: Results, decide: bool) -> int:
         and p.as_described == NOT_DECIDED
     ]
     for why, which in grouped((undecided_because(p), p) for p in near).items():
-        click.echo(
-            f"Not decided: {_listed(which)}: {why}; a smaller tolerance may decide.", err=True
-        )
+        say(f"Not decided: {_listed(which)}: {why}; a smaller tolerance may decide.")
     for reason, which in grouped((p.note, p) for p in failed).items():
-        click.echo(f"Error: the solution failed: {_listed(which)}: {reason}", err=True)
+        say(f"Error: the solution failed: {_listed(which)}: {reason}")
     return EXIT_NUMERICS_FAILED if failed else int(bool(missed or near))
 
 

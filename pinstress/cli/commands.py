@@ -46,6 +46,7 @@ from pinstress.cli.shared import (
     output_folder,
     read_chosen,
     read_study,
+    say,
     warn,
 )
 from pinstress.study.reading.choices import ChoiceError, Selection
@@ -74,7 +75,7 @@ def run_command_line(arguments: list[str]) -> int:
         if ended == EXIT_INTERRUPTED:
             why = error.__cause__ or error  # click wraps the error in its own
             left = str(why) if isinstance(why, Unfinished) else interrupts.left()
-            click.echo(f"Interrupted; {left}.", err=True)
+            say(f"Interrupted; {left}.")
         return ended
     finally:
         interrupts.forget()
@@ -94,16 +95,13 @@ def _status(error: BaseException) -> int | None:
             return EXIT_BAD_INPUT
         case InputError():
             about = error.of_option if isinstance(error, ChoiceError) else error
-            click.echo(f"Error: {about}", err=True)
+            say(f"Error: {about}")
             return EXIT_BAD_INPUT
         case ArithmeticError():  # MeshError, SolveError and what numpy raises
-            click.echo(f"Error: the solution failed: {error}", err=True)
+            say(f"Error: the solution failed: {error}")
             return EXIT_NUMERICS_FAILED
         case MemoryError():
-            click.echo(
-                "Error: the solution failed: out of memory; a larger --tolerance needs less",
-                err=True,
-            )
+            say("Error: the solution failed: out of memory; a larger --tolerance needs less")
             return EXIT_NUMERICS_FAILED
         case KeyboardInterrupt() | click.Abort():
             return EXIT_INTERRUPTED
@@ -348,7 +346,7 @@ def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
     click.echo("\n".join(x.lines))
     warn(*x.warnings)
     for line in x.unheld:
-        click.echo(f"Not decided: {line}.", err=True)
+        say(f"Not decided: {line}.")
     if opens or out is not None:
         from pinstress.cli.check_page import require_page, write_check_page
 
@@ -359,7 +357,7 @@ def check(study: Path, opens: bool, out: Path | None, no_browser: bool) -> int:
             write_check_page(loaded, x, page)
         except OSError as error:
             raise cannot_write(page, error) from None
-        click.echo(f"Page: {page}", err=True)
+        say(f"Page: {page}")
         if opens and not no_browser:
             open_page(page)
     return EXIT_NOT_REACHED if x.unheld else EXIT_REACHED

@@ -6,8 +6,6 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import click
-
 from pinbase.processes.apart import Failed, apart
 from pinbase.processes.pool import preload
 from pinstress.cli.closing import EXIT_REQUIREMENT_MISSED
@@ -20,6 +18,7 @@ from pinstress.cli.plots import (
     report_missing,
 )
 from pinstress.cli.run import console
+from pinstress.cli.shared import say
 from pinstress.cli.streams import unneeded
 from pinstress.cli.view import opened_results
 from pinstress.study.reading.errors import InputError
@@ -60,7 +59,7 @@ def compare(first: Path, second: Path, out: Path | None, pictures: bool) -> int:
         write_markdown(comparison, staging / "comparison.md")
         drawn = _pictures(comparison, opened, staging, failed) if pictures else ()
         write_comparison(comparison, staging / COMPARISON_PAGE, _plot(comparison, failed), drawn)
-    click.echo(f"Comparison: {out / COMPARISON_PAGE}", err=True)
+    say(f"Comparison: {out / COMPARISON_PAGE}")
     return max(status, report_missing(failed))
 
 
@@ -71,7 +70,7 @@ def _report_lost(comparison: RunComparison) -> int:
         rows = [f"{x.row.where}: {x.row.title}" for x in lost if x.change == change]
         if rows:
             many = "s" * (len(rows) > 1)
-            click.echo(f"Requirement{many} {change}: {'; '.join(rows)}.", err=True)
+            say(f"Requirement{many} {change}: {'; '.join(rows)}.")
     return EXIT_REQUIREMENT_MISSED if lost else 0
 
 
@@ -115,7 +114,7 @@ def _pictures(
     """
     problem = renderer_problem()
     if problem is not None:
-        click.echo(f"No pictures of the pins: {problem}", err=True)
+        say(f"No pictures of the pins: {problem}")
         return ()
     preload(*PICTURE_MODULES)
     rows = [row for row in comparison.rows if row.kind != UNCHANGED][:MAX_PICTURES]

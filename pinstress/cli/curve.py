@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import click
-
 from pinbase.processes.pool import processes
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_into, report_missing
 from pinstress.cli.run import console, progress_bar
+from pinstress.cli.shared import say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.curve import Ends, curve
 from pinstress.study.reading.file import Study
@@ -46,10 +45,10 @@ def curve_and_write(
     with unneeded(out):
         print_curve(result, console())
     if not quiet:
-        click.echo(f"Curve: {out / (CURVE_CSV if failed else f'{CURVE_NAME}.svg')}", err=True)
+        say(f"Curve: {out / (CURVE_CSV if failed else f'{CURVE_NAME}.svg')}")
     status = report_missing(failed)
     if not any(point.safety_factor for point in result.points):
-        click.echo("Not decided: no value has a factor of safety.", err=True)
+        say("Not decided: no value has a factor of safety.")
         return 1
     return status
 

@@ -17,6 +17,7 @@ from pinstress.cli.shared import (
     example,
     output_folder,
     read_chosen,
+    say,
 )
 
 
@@ -91,11 +92,10 @@ def cluster_keys(directory: Path) -> None:
     for path in (keys.authority, keys.certificate, keys.key):
         click.echo(str(path))
     address = ClusterConnection("tls://HOST:8786", "HOST", 8786, keys)
-    click.echo(
+    say(
         "Start the cluster, on computers that have these files, and use it:\n"
         f"  {address.scheduler_command}\n"
         f"  {address.worker_command}\n"
         f"  pinstress sweep study.toml --scheduler {address.address} "
-        f"--tls {shlex.quote(str(directory))}",
-        err=True,
+        f"--tls {shlex.quote(str(directory))}"
     )

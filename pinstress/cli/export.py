@@ -10,7 +10,7 @@ from urllib.parse import quote
 import click
 
 from pinstress.cli.new_file import require_new, write_new
-from pinstress.cli.shared import QUIET_OPTION, example, read_study
+from pinstress.cli.shared import QUIET_OPTION, example, read_study, say
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, cannot_write
 
@@ -55,7 +55,7 @@ def export(
 
     def tell(step: str) -> None:
         if not quiet:
-            click.echo(f"{step} ...", err=True)
+            say(f"{step} ...")
 
     try:
         lines = review_deck(loaded, pin, case, deck, tell)

@@ -18,7 +18,7 @@ from pinbase.keys import key_part
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
-from pinstress.cli.shared import resumable
+from pinstress.cli.shared import resumable, say
 from pinstress.cli.size import OTHER_FILE_REMEDY, close, target_of
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.at_probability import lighten_at
@@ -161,14 +161,13 @@ def _write(
     if not quiet:
         close(study, design.study, target if changed else None)
     if not design.settled:
-        click.echo(
+        say(
             "Not settled: the factors in the run of the new study are not yet those that were "
-            "aimed at; size the new study again.",
-            err=True,
+            "aimed at; size the new study again."
         )
     missed = [row for row in rows if row.why]
     for row in missed:
-        click.echo(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.", err=True)
+        say(f"{row.result.capitalize()}: pin {row.pin}: {row.why}.")
     return int(bool(missed) or not design.settled)
 
 

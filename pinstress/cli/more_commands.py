@@ -27,6 +27,7 @@ from pinstress.cli.shared import (
     names,
     output_folder,
     read_chosen,
+    say,
 )
 from pinstress.cli.streams import unneeded
 from pinstress.study.reading.errors import InputError, cannot_write
@@ -70,7 +71,7 @@ def init(directory: Path, opens: bool) -> int:
     out = Path("out") / target.stem
     if not opens:
         study = as_argument(str(target))
-        click.echo(f"Next: pinstress run {study}  (writes {out / 'report.html'})", err=True)
+        say(f"Next: pinstress run {study}  (writes {out / 'report.html'})")
         return 0
     from pinstress.cli.run import OutputOptions, run_and_write
     from pinstress.study.model.load import load_study
@@ -110,7 +111,7 @@ def import_(file: Path, pin: str | None, material: str, unit: str, out: Path | N
         click.echo(text, nl=False)
     else:
         write_new(out, text.encode(), "name another file")
-        click.echo(f"Written: {out}", err=True)
+        say(f"Written: {out}")
 
 
 @click.command(

@@ -13,8 +13,6 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import click
-
 from pinbase.errors import Damaged
 from pinbase.grouped import grouped
 from pinbase.processes import interrupts
@@ -23,6 +21,7 @@ from pinbase.processes.interrupts import Unfinished
 from pinbase.processes.pool import preload
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import RESULTS_JSON
+from pinstress.cli.shared import say
 from pinstress.study.reading.errors import InputError, cannot_write
 from pinstress.study.reading.extras import require_package
 from pinstress.study.reading.file_names import field_name
@@ -66,7 +65,7 @@ def plots(directory: Path, quiet: bool = False) -> int:
         raise _strange(directory, min(strange, default=PLOTS_FOLDER))
     drawn = add_plots(directory, quiet)
     if drawn.paths:
-        click.echo(f"Written: {directory / PLOTS_FOLDER}", err=True)
+        say(f"Written: {directory / PLOTS_FOLDER}")
     return report_failed(directory, drawn.failed)
 
 
@@ -81,7 +80,7 @@ def pdf(directory: Path) -> int:
         raise _strange(directory, PDF_FILE)
     failed = add_pdf(directory)
     if not failed:
-        click.echo(f"Written: {directory / PDF_FILE}", err=True)
+        say(f"Written: {directory / PDF_FILE}")
     return report_failed(directory, failed)
 
 
@@ -135,7 +134,7 @@ def report_missing(failed: dict[str, Failed]) -> int:
     """Report what is missing in a file that was written, and return the exit status."""
     if failed:
         said = "; ".join(f"{name}: {failure.reason}" for name, failure in failed.items())
-        click.echo(f"Error: missing in it: {said}", err=True)
+        say(f"Error: missing in it: {said}")
     return int(bool(failed))
 
 
@@ -170,10 +169,9 @@ def report_failed(directory: Path, failed: dict[str, Failed]) -> int:
     said = "; ".join(f"{_listed(names)}: {why}" for why, names in by_reason.items())
     ways = ["pdf"] * (PDF_FILE in failed) + ["plots"] * bool(failed.keys() - {PDF_FILE})
     again = " and ".join(f"`pinstress {way} {as_argument(str(directory))}`" for way in ways)
-    click.echo(
+    say(
         f"Error: not drawn: {said}. All other results in {directory} are complete; {again} "
-        f"{'tries' if len(ways) == 1 else 'try'} again.",
-        err=True,
+        f"{'tries' if len(ways) == 1 else 'try'} again."
     )
     return 1
 
@@ -241,7 +239,7 @@ def _drawn(directory: Path, into: Path, quiet: bool) -> Drawn:
     rows = opened.content["pins"]
     problem = renderer_problem() if solid else "the folder has no fields (vtk/)"
     if rows and problem is not None and not quiet:
-        click.echo(f"No pictures of the pins: {problem}", err=True)
+        say(f"No pictures of the pins: {problem}")
     if rows and problem is None:
         preload(*PICTURE_MODULES)
         for row in rows:

@@ -7,8 +7,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from assess.judgement import DEPENDS, NOT_DECIDED
 from pinbase.processes.apart import Failed
 from pinbase.processes.pool import preload, processes
@@ -17,7 +15,7 @@ from pinstress.analysis.results import run
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import images, report_missing
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
-from pinstress.cli.shared import connected
+from pinstress.cli.shared import connected, say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.reliability.assess import assess
 from pinstress.explore.reliability.designs import for_values, random_numbers
@@ -80,16 +78,16 @@ def reliability_and_write(
     with unneeded(directory):
         print_reliability(assessment, console())
     if not quiet:
-        click.echo(f"Report: {directory / RELIABILITY_PAGE}", err=True)
+        say(f"Report: {directory / RELIABILITY_PAGE}")
     return max(report_missing(failed), _status(assessment))
 
 
 def _status(assessment: Reliability) -> int:
     open_ones = [r for r in assessment.risks if r.result(assessment.probability) == NOT_DECIDED]
     for risk in open_ones:
-        click.echo(f"Not decided: {name(risk)}.", err=True)
+        say(f"Not decided: {name(risk)}.")
     deep = [r for r in assessment.risks if r.result(assessment.probability) == DEPENDS]
     for risk in deep:
         what = " and ".join(risk.depends_on(assessment.probability))
-        click.echo(f"Depends on {what}: {name(risk)}.", err=True)
+        say(f"Depends on {what}: {name(risk)}.")
     return int(bool(open_ones or deep))

@@ -34,7 +34,7 @@ from pinstress.cli.closing import (
 from pinstress.cli.new_file import require_junit
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
-from pinstress.cli.shared import open_page, warn
+from pinstress.cli.shared import open_page, say, warn
 from pinstress.cli.streams import unneeded
 from pinstress.study.model.balance import other_warnings
 from pinstress.study.model.lost_fits import lost_fit_warnings
@@ -43,6 +43,7 @@ from pinstress.study.reading.choices import Selection
 from pinstress.study.reading.extras import require_fatigue, require_package
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.file_names import field_name
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.data.fields import Field
 from reports.data.results import Results
 from reports.data.row import Units
@@ -127,6 +128,7 @@ def run_and_write(
     most = processes(wanted.jobs)
     cache = user_cache() if wanted.cached else None
     with replacing(directory) as staging:  # from here on a second run into the folder is refused
+        before = inputs(study)
         plan = replace(prepare(study, also=also, **chosen), sensitive=wanted.sensitive)
         tasks = plan.tasks
         warn(*other_warnings(study, tasks), *lost_fit_warnings(study, tasks), *fit_note(study))
@@ -138,6 +140,7 @@ def run_and_write(
             _preload_for(plan, cache)
             outcomes = solve_tasks(plan, keep, progress, jobs=most, cache=cache, **ask)
             results = results_of(plan, outcomes)
+            require_unchanged(study, before)
             if wanted.vtk != "none":
                 _write_flows(results, staging / "vtk")
                 files = {field_name(row.pin, row.case): row for row in results.pins}
@@ -154,7 +157,7 @@ def run_and_write(
     if not wanted.quiet:
         report_left_out(results)
         report_reused(plan, outcomes)
-        click.echo(f"Report: {directory / REPORT_PAGE}", err=True)
+        say(f"Report: {directory / REPORT_PAGE}")
         _large_tables(directory)
     status = report_missed(results, study.table.analysis.goal == "decide")
     status = max(status, report_unchecked(results), report_disagreements(results))
@@ -266,7 +269,7 @@ def loads_and_write(
     with unneeded(directory):
         print_loads(results, console())
     if not quiet:
-        click.echo(f"Written: {directory}", err=True)
+        say(f"Written: {directory}")
         _large_tables(directory)
     return draw_and_print(directory, plots, False, quiet)
 
@@ -274,10 +277,9 @@ def loads_and_write(
 def _large_tables(directory: Path) -> None:
     """Print the names of tables that are too long for CSV."""
     if names := sorted(path.name for path in directory.glob("*.parquet")):
-        click.echo(
+        say(
             f"More than {MAX_CSV_ROWS:,} rows, so in Parquet (for pandas, polars, DuckDB): "
-            f"{', '.join(names)}",
-            err=True,
+            f"{', '.join(names)}"
         )
 
 

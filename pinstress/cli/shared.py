@@ -222,10 +222,15 @@ def names_in(text: str, known: Container[str]) -> list[str]:
     return [entry for entry in entries if entry]
 
 
+def say(text: str) -> None:
+    """Print a line beside the results, on standard error."""
+    click.echo(text, err=True)
+
+
 def warn(*warnings: str) -> None:
     """Print warnings, one line each."""
     for warning in warnings:
-        click.echo(f"Warning: {warning}", err=True)
+        say(f"Warning: {warning}")
 
 
 def open_page(page: Path) -> None:
@@ -233,7 +238,7 @@ def open_page(page: Path) -> None:
     import webbrowser
 
     if not webbrowser.open(page.resolve().as_uri()):
-        click.echo(f"No browser found; open {page} yourself.", err=True)
+        say(f"No browser found; open {page} yourself.")
 
 
 # Commands by purpose, as the help lists them.

@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from assess.judgement import NOT_DECIDED
 from pinbase.grouped import grouped
 from pinbase.processes.pool import preload, processes
@@ -18,7 +16,7 @@ from pinstress.analysis.gather.gather import units_of
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.cli.new_file import require_new
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
-from pinstress.cli.shared import connected, resumable
+from pinstress.cli.shared import connected, resumable, say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
@@ -31,6 +29,7 @@ from pinstress.study.model.requirements import sizing_factor
 from pinstress.study.reading.choices import require_positive
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.format.numbers import DASH, short
 from reports.text.sizes import SizeRow, print_sizes
 
@@ -82,7 +81,7 @@ def size_and_write(study: Study, goal: SizingGoal, options: SizeOptions) -> int:
     missed = grouped(((row.result.capitalize(), row.why), row.pin) for row in rows if row.why)
     for (result, why), pins in missed.items():
         of = f"pin{'s' * (len(pins) > 1)} {', '.join(pins)}"
-        click.echo(f"{result}: {of}: {why}.", err=True)
+        say(f"{result}: {of}: {why}.")
     return int(bool(missed))
 
 
@@ -116,6 +115,7 @@ class _Sizing:
     ) -> None:
         self.goal = goal
         self._study, self._target, self._state = study, target, state
+        self._inputs = inputs(study)
         self._pins: dict[str, SizingResult] = {}
         self.written = False
 
@@ -145,7 +145,11 @@ class _Sizing:
         self.written = True
 
     def finish(self, result: SizingResult) -> None:
-        """Save a pin that is sized."""
+        """Save a pin that is sized.
+
+        Raises: InputError if a file of the study has changed, or if nothing can be written.
+        """
+        require_unchanged(self._study, self._inputs)
         self._pins.pop(result.pin, None)  # so that the pin becomes the last in the dictionary
         self._pins[result.pin] = result
         self._state.write(tuple(self.pins))
@@ -246,13 +250,12 @@ def close(study: Study, new: Study, target: Path | None) -> None:
             old = study.table.pin[name].lug[at].outer_diameter
             if lug.outer_diameter != old and old and lug.outer_diameter:
                 unit = study.system.factor("length")
-                click.echo(
+                say(
                     f"Pin {name}: the eye {at} would be too narrow; its outer diameter is now "
                     f"{short(lug.outer_diameter / unit)} {study.system.length}, was "
-                    f"{short(old / unit)}.",
-                    err=True,
+                    f"{short(old / unit)}."
                 )
-    click.echo(f"Written: {target}" if target else "Nothing is new; no study is written.", err=True)
+    say(f"Written: {target}" if target else "Nothing is new; no study is written.")
 
 
 def _row(study: Study, new: Study, sized: SizingResult) -> SizeRow:

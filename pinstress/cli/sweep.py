@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from pinbase.processes.folder_lock import Release, lock
 from pinbase.processes.pool import cores
 from pinstress.cli import manifest
 from pinstress.cli.output_folder import require_replaceable, resolved
 from pinstress.cli.run import bar_on_stderr, console
-from pinstress.cli.shared import open_page, resumable, warn
+from pinstress.cli.shared import open_page, resumable, say, warn
 from pinstress.cli.streams import unneeded
 from pinstress.explore.sweep.connection import ClusterConnection
 from pinstress.explore.sweep.design_columns import designs_of
@@ -87,7 +85,7 @@ def sweep_and_write(
     sweep = planned(study, pins, cases)
     if options.resume and parts.finished:
         if not options.quiet:
-            click.echo(f"The sweep in {directory} is complete: nothing to do.", err=True)
+            say(f"The sweep in {directory} is complete: nothing to do.")
         return _report_designs(directory, read_table(directory / DESIGNS_FILE), options)
     kept = resumable(lambda: parts.count, "batch", "batches")
     with _claimed(directory, parts, options.resume), kept, _writing(directory):
@@ -96,7 +94,7 @@ def sweep_and_write(
             parts.continue_with(table_of(study, sweep.parameters, []).schema)
             if not options.quiet:
                 count = len(sweep.values)
-                click.echo(f"Continued from {before:,} designs to {count:,}.", err=True)
+                say(f"Continued from {before:,} designs to {count:,}.")
         alone = options.connection is not None or (options.jobs or cores()) == 1
         with progress(options.quiet, alone) as report:
             table = solved(sweep, parts, options.jobs, options.connection, report, warn)
@@ -110,8 +108,8 @@ def _report_designs(directory: Path, table: pa.Table, options: SweepOptions) -> 
     with unneeded(directory):
         summary(table, console())
     if not options.quiet:
-        click.echo(f"Table: {directory / DESIGNS_FILE}", err=True)
-        click.echo(f"Page: {directory / DESIGNS_PAGE}", err=True)
+        say(f"Table: {directory / DESIGNS_FILE}")
+        say(f"Page: {directory / DESIGNS_PAGE}")
     if options.opens:
         open_page(directory / DESIGNS_PAGE)
     verdicts = set(table["verdict"].unique().to_pylist())
@@ -263,4 +261,4 @@ class _Lines:
             return
         self._last = now
         left = (now - self._start) / (count - self._first) * (total - count)
-        click.echo(f"{count:,} of {total:,} designs, {left:,.0f} s left", err=True)
+        say(f"{count:,} of {total:,} designs, {left:,.0f} s left")

@@ -8,12 +8,11 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import click
-
 from pinbase.processes.apart import apart
 from pinbase.processes.pool import preload
 from pinstress.cli.new_file import require_new, write_new
 from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, lacking
+from pinstress.cli.shared import say
 from pinstress.study.reading.errors import InputError
 from reports.vtk.read_back import Opened, open_results
 from reports.vtk.render import render_pin, show_pin
@@ -73,7 +72,7 @@ def view(
         drawing = partial(render_pin, field, picture, opened.units, title)
         (drawn,) = apart([(picture.name, drawing)], PICTURE_SECONDS)
         if drawn is not None:
-            click.echo(f"Error: {screenshot} could not be drawn: {drawn.reason}", err=True)
+            say(f"Error: {screenshot} could not be drawn: {drawn.reason}")
             return 1
         if force and os.path.lexists(screenshot):
             _remove(screenshot)

@@ -16,6 +16,7 @@ from pinstress.explore.sweep.workers import PROCESS_DIED
 from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import checks_besides_yield, common_required_factor
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from reports.data.curve import CurvePoint, FactorCurve
 
 USUAL_RANGE = 0.5, 2.0  # default ends, relative to the number in the study
@@ -43,9 +44,10 @@ def curve(
     jobs: number of processes.
 
     A design that cannot be built or solved gives a point without numbers, with the reason.
-    Raises: InputError for a key that is not a number of the study, and for an empty range.
+    Raises: InputError for a key that is not a number of the study, for an empty range, and if a
+    file of the study changes meanwhile.
     """
-    number = _number(study, key)
+    before, number = inputs(study), _number(study, key)
     low, high = _range(study, number, ends)
     if pins is None and number.path[0] == "pin":
         pins = [str(number.path[1])]
@@ -55,6 +57,7 @@ def curve(
     parts = np.array_split(values, min(jobs, len(values)))
     work = [Job(key, partial(_solved, evaluator, part)) for part in parts]
     outcomes = in_parallel(work, jobs, progress)
+    require_unchanged(study, before)
     solved: list[CurvePoint] = []
     for part, rows in zip(parts, outcomes, strict=True):
         if isinstance(rows, ProcessDied):

@@ -106,10 +106,10 @@ class RunComparison:
 
     folders, titles: of both runs.
     stress, force: the units of the first run, in which both are compared.
-    inputs: the values that differ, by key; None where a run of an earlier version wrote no inputs.
+    inputs: the values that differ, by key.
     forces: the largest forces by case and connection.
     margins: the governing check of each pin, and its margin.
-    requirements: those of both runs; None where a run of an earlier version lists none.
+    requirements: those of both runs.
     """
 
     folders: tuple[str, str]
@@ -117,10 +117,10 @@ class RunComparison:
     stress: str
     force: str
     rows: tuple[RowPair, ...]
-    inputs: tuple[ValuePair, ...] | None
+    inputs: tuple[ValuePair, ...]
     forces: tuple[ValuePair, ...]
     margins: tuple[ValuePair, ...]
-    requirements: tuple[RequirementPair, ...] | None
+    requirements: tuple[RequirementPair, ...]
     versions: tuple[ValuePair, ...]
 
     def count(self, kind: str) -> int:
@@ -129,7 +129,7 @@ class RunComparison:
 
     def requirements_that(self, *changes: str) -> list[RequirementPair]:
         """Return the requirements whose change is one of `changes`."""
-        return [pair for pair in self.requirements or () if pair.change in changes]
+        return [pair for pair in self.requirements if pair.change in changes]
 
 
 def compared(
@@ -143,20 +143,18 @@ def compared(
     units: the stress unit and the force unit of the second run, in those of the first.
     """
     stress, force = units
-    both = first, second
-    a, b = ({(p["pin"], p["case"]): p for p in run["pins"]} for run in both)
+    a, b = ({(p["pin"], p["case"]): p for p in run["pins"]} for run in (first, second))
     rows = [
         RowPair(*row, _side(a.get(row), 1.0), _side(b.get(row), stress))
         for row in dict.fromkeys((*a, *b))
     ]
-    known = all("inputs" in run for run in both)
     return RunComparison(
         folders=folders,
         titles=(first["title"], second["title"]),
         stress=first["units"]["stress"],
         force=first["units"]["force"],
         rows=tuple(sorted(rows, key=_place)),
-        inputs=_of_keys(first, second, "inputs") if known else None,
+        inputs=_of_keys(first, second, "inputs"),
         forces=_by_change(_differing(_forces(first, 1.0), _forces(second, force))),
         margins=_differing(_margins(first), _margins(second)),
         requirements=requirement_pairs(first, second),
@@ -239,7 +237,7 @@ def _margins(run: Mapping[str, Any]) -> dict[tuple[str, ...], tuple[float, str]]
     The margin is rounded to six digits, so that round-off is not reported as a change.
     """
     least: dict[tuple[str, ...], tuple[float, str]] = {}
-    for row in run.get("margins", ()):
+    for row in run["margins"]:
         if row["margin"] is None or not row["governs"]:
             continue
         here = float(f"{row['margin']:.6g}"), f"{row['method']}, {row['case']}"

@@ -21,9 +21,9 @@ def governing(results: Results) -> list[PinMargin]:
         key = margin.pin, margin.case
         may = margin.margin.governs and margin.used >= 0.0 and margin.margin.method != YIELD_METHOD
         may = may and (margin.used > 1.0 or not margin.margin.omits_cuts)
-        if may and (key not in worst or margin.used > worst[key].used):
+        if may and (key not in worst or margin.rank > worst[key].rank):
             worst[key] = margin
-    return sorted(worst.values(), key=lambda margin: -margin.used)
+    return sorted(worst.values(), key=lambda margin: -margin.rank)
 
 
 def skipped(results: Results) -> dict[str, list[PinMargin]]:

@@ -11,6 +11,7 @@ from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, OUTCOME_ORDER, SAFE, Y
 from assess.margin import Margin, PinMargin
 from assess.strength.fatigue_life import FATIGUE_LIFE
 from assess.strength.model_stress import RUPTURE_METHOD, YIELD_METHOD
+from pinbase.rounding import without_round_off
 from reports.data.decision import factor_ends, limit, utilisation
 from reports.data.lug_modes import lug_mode
 from reports.data.requirements import MET, MISSED, NOT_CHECKED, RequirementRow, requirement_rows
@@ -56,7 +57,7 @@ class JudgedCheck:
     @property
     def rank(self) -> tuple[int, float]:
         """The sort key of the check: the worst comes first."""
-        return OUTCOME_ORDER[self.outcome], -self.used
+        return OUTCOME_ORDER[self.outcome], -without_round_off(self.used)
 
 
 def judged_checks(results: Results) -> list[JudgedCheck]:

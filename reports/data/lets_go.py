@@ -18,6 +18,7 @@ from assess.strength.lug_stress import METHOD as LUG_METHOD
 from assess.strength.model_stress import CLAUSE, YIELD_METHOD
 from assess.strength.press_fit import METHOD as PRESS_FIT_METHOD
 from fea.support.records import LugStress
+from pinbase.rounding import without_round_off
 from reports.data.decision import factor_ends, worst_first
 from reports.data.results import PinShape, Results
 from reports.data.row import PinResult
@@ -63,6 +64,11 @@ class LettingGo:
     needs: str = ""
 
     @property
+    def rank(self) -> float:
+        """The load factor for sorting; steps without one come last."""
+        return inf if self.load_factor is None else without_round_off(self.load_factor)
+
+    @property
     def missed(self) -> bool:
         """Whether the part lets go before the required factor."""
         least = self.load_factor if self.low is None else self.low
@@ -105,7 +111,7 @@ def steps(row: PinResult, shape: PinShape | None) -> list[LettingGo]:
     joint = _Joint.of(row, shape)
     raw = [*_of_pin(row), *_of_lugs(row), *_of_margins(row)]
     merged = [*_merged(joint.judged(raw)), *_not_computed(row, joint)]
-    return sorted(merged, key=lambda step: inf if step.load_factor is None else step.load_factor)
+    return sorted(merged, key=lambda step: step.rank)
 
 
 @dataclass(frozen=True)
@@ -296,7 +302,7 @@ def _merged(steps: Iterable[LettingGo]) -> list[LettingGo]:
 
 def _outer(a: LettingGo, b: LettingGo) -> LettingGo:
     """Return the earlier of two steps, with the outer ends of both."""
-    first = min(a, b, key=lambda step: inf if step.load_factor is None else step.load_factor)
+    first = min(a, b, key=lambda step: step.rank)
     lows, highs = (
         [x for x in ends if x is not None] for ends in ((a.low, b.low), (a.high, b.high))
     )

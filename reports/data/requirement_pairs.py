@@ -60,15 +60,9 @@ class RequirementPair:
 
 def requirement_pairs(
     first: Mapping[str, Any], second: Mapping[str, Any]
-) -> tuple[RequirementPair, ...] | None:
-    """Return the pairs of requirements in two results.json, the lost ones first.
-
-    The result is None where one run is of an earlier version, which lists no requirements.
-    """
-    lists = first.get("requirements"), second.get("requirements")
-    if lists[0] is None or lists[1] is None:
-        return None
-    a, b = _by_key(lists[0]), _by_key(lists[1])
+) -> tuple[RequirementPair, ...]:
+    """Return the pairs of requirements in two results.json, the lost ones first."""
+    a, b = _by_key(first["requirements"]), _by_key(second["requirements"])
     pairs = [RequirementPair(a.get(key), b.get(key)) for key in dict.fromkeys((*a, *b))]
     counted = [pair for pair in pairs if pair.change != GONE or _counts(pair.first or pair.row)]
     return tuple(sorted(counted, key=lambda pair: REQUIREMENT_CHANGES.index(pair.change)))

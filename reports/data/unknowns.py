@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from fea.support.records import FRICTION, TOGETHER
+from fea.support.records import FRICTION, TOGETHER, Variation
 from pinbase.grouped import grouped
+from reports.data.decision import beneath_factor
 from reports.data.dependence import YIELD_STRENGTH
 from reports.data.over_loads import BENEATH_CONTACT, landing_axes
 from reports.data.row import Dependence, LandingRange, PinResult
@@ -161,6 +162,46 @@ def factor_spread(row: PinResult) -> Ends | None:
         low, high = low * least / (factor * stress), high * most / (factor * stress)
     ranges = over, row.landing, row.sharing, row.strength_range
     return None if all(each is None for each in ranges) else (low, high)
+
+
+def growth_beneath(row: PinResult) -> float:
+    """Return the ratio, at least 1, of the largest stress beneath contact over all that is open
+    together to that of the row; 1 without contact.
+
+    The ratios over the joint, the landing, the links and the strength are multiplied.
+    """
+    contact = row.places.contact if row.places else None
+    if contact is None or not contact.beneath:
+        return 1.0
+    ratios = list[float]()
+    if row.joint is not None and row.joint.range is not None:
+        ratios += _ratios_over_joint(row.joint.range.variations, contact.beneath)
+    if row.landing is not None and row.landing.beneath is not None:
+        ratios.append(float(row.landing.beneath.max()) / contact.beneath)
+    if row.sharing is not None and row.sharing.beneath is not None:
+        ratios.append(row.sharing.beneath[1] / contact.beneath)
+    if row.strength_range is not None and row.yield_strength:
+        ratios.append(row.yield_strength / row.strength_range[0])
+    return math.prod(max(1.0, ratio) for ratio in ratios)
+
+
+def _ratios_over_joint(variations: Iterable[Variation], beneath: float) -> Iterable[float]:
+    """Return the largest ratio of the stress beneath contact over each property of the joint, or
+    over all properties where they were solved together.
+    """
+    known = [(x.what, (x.beneath or 0.0) / beneath) for x in variations]
+    together = any(what == TOGETHER for what, _ in known)
+    groups = grouped(("" if together else what, ratio) for what, ratio in known)
+    return [max(ratios) for ratios in groups.values()]
+
+
+def least_factor(row: PinResult) -> float:
+    """Return the least factor of a row over all that is open together, also by the stress beneath
+    contact; inf without a factor.
+    """
+    spread = factor_spread(row)
+    known = spread[0] if spread else row.safety_factor or math.inf
+    return min(known, beneath_factor(row) / growth_beneath(row))
 
 
 def without_range(row: PinResult) -> bool:

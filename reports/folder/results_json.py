@@ -116,9 +116,9 @@ class _Results(JsonPart):
     versions: dict[str, str]
     pins: list[_Row]
     loads: list[_Loads]
-    margins: list[_Margin] = Field(default_factory=list)
-    requirements: list[_Requirement] | None = None
-    inputs: dict[str, str] = Field(default_factory=dict)
+    margins: list[_Margin]
+    requirements: list[_Requirement]
+    inputs: dict[str, str]
 
 
 def read_results(directory: Path) -> dict[str, Any]:

@@ -66,9 +66,9 @@ def _plain(value: float, digits: int, size: int) -> str:
     return text.replace("-", "−")
 
 
-def short(value: float) -> str:
+def short(value: float | None) -> str:
     """Return a dimension or an instant as it was given: without trailing zeros, at most
-    six digits.
+    six digits; a dash for None.
     """
     text = engineering(value, 6)
     head, times, power = text.partition("×")

@@ -17,19 +17,16 @@ from reports.format.template import rendered
 from reports.page.linkage_drawing import draw_linkage
 from reports.page.linkage_panel import Instant, Mark
 from reports.page.pin_drawing import draw_pin
-from reports.tables.column import Column, Table, read_only
+from reports.tables.column import Column, Table, fields, headed, texts
 
 MAX_DRAWN_CASES = 6  # cases whose linkage is drawn
 MAX_DRAWN_PINS = 60  # the table lists all pins
 
 ROW_COLUMNS: list[Column[PlannedRow]] = [
-    read_only("pin", lambda row: row.pin, numeric=False),
-    read_only("case", lambda row: row.case, numeric=False),
-    read_only("support", lambda row: row.support, numeric=False),
-    read_only("model", lambda row: row.model, numeric=False),
-    read_only("instants", lambda row: f"{row.instants:,}"),
-    read_only("largest force", lambda row: row.largest, "force"),
-    read_only("from link", lambda row: row.at, numeric=False),
+    *texts("pin case support model"),
+    *headed("instants", show="{:,}".format),
+    *fields("largest", "force", heading="largest force"),
+    *fields("at", heading="from link", numeric=False),
 ]
 
 

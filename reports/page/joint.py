@@ -91,12 +91,12 @@ def _sentence(pin: PinResult, joint: JointResult, units: Units) -> str:
 
 
 def _bands(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[BandContact]]:
-    rows = [PinRow(pin, units, band) for band in joint.bands]
+    rows = [PinRow(pin, band) for band in joint.bands]
     return Table("joint_bands", in_order(BAND_COLUMNS, BAND_ORDER), rows)
 
 
 def _lugs(pin: PinResult, joint: JointResult, units: Units) -> Table[PinRow[LugStress]]:
-    rows = [PinRow(pin, units, lug) for lug in joint.lugs]
+    rows = [PinRow(pin, lug) for lug in joint.lugs]
     return Table("lugs", in_order(LUG_COLUMNS, LUG_ORDER), rows)
 
 

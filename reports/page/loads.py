@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from pinbase.rounding import without_round_off
 from reports.data.mechanics import PeakReaction, ReactionTable
 from reports.data.results import Results
 from reports.data.row import GoverningLoad, PinResult, Units
@@ -19,16 +20,6 @@ from reports.tables.loads.wear import WEAR_NOTE, wear_table
 from reports.tables.loads.wheel import WHEEL_NOTE, wheel_table
 from reports.tables.published import published_reactions
 from reports.tables.strength.landing import LANDING_NOTE, landing_blocks
-
-
-@dataclass(frozen=True)
-class DropPart:
-    """A drop: the clause that requires it, sentences, and tables of its largest values."""
-
-    case: str
-    clause: str
-    words: list[str]
-    grids: list[Grid]
 
 
 def load_part(results: Results, everything: Results) -> dict[str, Any]:
@@ -43,12 +34,7 @@ def load_part(results: Results, everything: Results) -> dict[str, Any]:
         "reactions": [(table, _reactions(table, results.units)) for table in results.reactions],
         "without": NO_PIN_NAME,
         "drops": [
-            DropPart(
-                d.case,
-                d.clause,
-                drop_words(d, results),
-                [peak_grid(d, results), impulse_grid(d, results)],
-            )
+            (d, drop_words(d, results), [peak_grid(d, results), impulse_grid(d, results)])
             for d in results.drops
         ],
         "wear": grid_of(wear_table(results), results.units),
@@ -64,7 +50,7 @@ def load_part(results: Results, everything: Results) -> dict[str, Any]:
 def largest_force(results: Results) -> str:
     """Return a sentence on the largest force at a connection in any case."""
     peaks = [(table, peak) for table in results.reactions for peak in table.largest]
-    table, peak = max(peaks, key=lambda of: of[1].force)
+    table, peak = max(peaks, key=lambda of: without_round_off(of[1].force))
     body = table.bodies[table.connections.index(peak.connection)]
     when = "" if peak.time is None else f" at t = {short(peak.time)} {results.units.time}"
     on = f"of {body} on the pin at {peak.connection}" if body else f"at {peak.connection}"

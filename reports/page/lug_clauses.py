@@ -85,7 +85,7 @@ def _is_of(m: Margin, lug: str, pin: str) -> bool:
 def _cell(margins: list[Margin], row: PinResult, units: Units) -> ClauseCell | None:
     if not margins:
         return None
-    m = max(margins, key=lambda m: m.used)
+    m = max(margins, key=lambda m: m.rank)
     if m.needs:
         return ClauseCell("", "", False, (), (m.method,), m.needs)
     shown = MarginRow(row.pin, row.case, m, units)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,7 +39,7 @@ from reports.plots.spec import Plot
 from reports.plots.theme import style_sheet
 from reports.text.method import METHOD_NOTE
 
-Find = Callable[..., Plot | None]
+MOTION_PLOTS = "linkage", "bodies", "transmission", "shaking", "ledger"  # kinds of plots
 
 
 if TYPE_CHECKING:
@@ -102,7 +101,7 @@ def render(results: Results, directory: Path) -> str:
         deferred=len(pins) > MAX_PINS_AT_ONCE,
         anchors=anchors,
         plot=plot,
-        motion=motion_parts(shown, plot, directory),
+        motion=motion_parts(shown, plots, directory),
         loads=load_part(shown, results),
         timings=timings(results),
         scripts=script_part(plots, document(results, printed, overview)),
@@ -140,30 +139,22 @@ class MotionPart:
     plots: tuple[Plot, ...]
 
 
-def motion_parts(results: Results, find: Find, directory: Path) -> list[MotionPart]:
-    """Return the cases with plots or an animation, which is read from the folder of the page.
+def motion_parts(results: Results, plots: Mapping[str, Plot], directory: Path) -> list[MotionPart]:
+    """Return the cases with plots or an animation, which is read from the folder of the page."""
 
-    find: returns a plot by its kind and names; None if there is none.
-    """
-    kinds = {s.case: list(_linkage(s.case, find)) for s in results.skeletons}
+    def belongs(name: str, case: str) -> bool:
+        kind = name.partition(".")[0]  # of several plots of bodies: bodies-2
+        return kind.partition("-")[0] in MOTION_PLOTS and name == plot_name(kind, case)
+
     parts = [
         MotionPart(
             case,
             _animation(case, directory),
-            tuple(plot for kind in names if (plot := find(kind, case)) is not None),
+            tuple(plot for name, plot in plots.items() if belongs(name, case)),
         )
-        for case, names in kinds.items()
+        for case in dict.fromkeys(s.case for s in results.skeletons)
     ]
     return [part for part in parts if part.plots or part.animation]
-
-
-def _linkage(case: str, find: Find) -> Iterator[str]:
-    yield from ("linkage", "bodies")
-    for number in count(2):
-        if find(f"bodies-{number}", case) is None:
-            break
-        yield f"bodies-{number}"
-    yield from ("transmission", "shaking", "ledger")
 
 
 def _animation(case: str, directory: Path) -> str:

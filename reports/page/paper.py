@@ -86,10 +86,7 @@ def document(
         "maxima": grid_of(published_maxima(results), results.units),
         "published_source": results.published_source,
         "pins": [_pin(results, name, drawings) for name in drawings],
-        "loads": [
-            {"case": part.case, "notes": part.notes, "grids": part.grids}
-            for part in load_parts(results)
-        ],
+        "loads": load_parts(results),
         "provenance": grid_of(_provenance(results), results.units),
         "assumptions": results.assumptions,
         "method": METHOD_NOTE,

@@ -19,7 +19,7 @@ from reports.page.places import PlacesPart, places_part
 from reports.page.second_opinion import OpinionPart, opinion_part
 from reports.page.stress_along import governing_rows
 from reports.page.viewer import PinView, pin_views
-from reports.tables.column import Column, Grid, Table, grid_of, read_only
+from reports.tables.column import Column, Grid, Table, fields, grid_of, headed, read_only, texts
 from reports.tables.strength.hand_checks import pin_checks
 from reports.tables.strength.margins import pin_margins
 from reports.tables.stress.singular_zones import pin_zones, shown_zones
@@ -122,8 +122,8 @@ def _case(results: Results, row: PinResult, governs: bool) -> PinCase:
         row.outcome,
         governs,
         pin_sentence(row, units),
-        grid_of(shown_zones(row, zones[row.case], units), units),
-        pin_checks(row, units).grid(units) if row.hand_checks else None,
+        grid_of(shown_zones(row, zones[row.case]), units),
+        pin_checks(row).grid(units) if row.hand_checks else None,
         grid_of(pin_margins(results, row), units),
         loads_at(row, units),
         places_part(row, units),
@@ -148,20 +148,12 @@ def _error(row: PinResult) -> str:
     return percent_error(row)
 
 
-def _time(row: PinResult) -> str:
-    return engineering(row.time)
-
-
-def _place(row: PinResult) -> str | None:
-    return row.places.governs if row.places else None
-
-
 CASE_COLUMNS: list[Column[PinResult]] = [
-    read_only("case", lambda row: row.case, numeric=False),
+    *texts("case"),
     read_only("factor", lambda row: factor_range(row, "–")),
     read_only("stress", lambda row: row.max_von_mises, "stress"),
     read_only("±", _error),
-    read_only("place", _place, numeric=False, drop_if_empty=True),
+    *fields("places?.governs", heading="place", numeric=False, drop_if_empty=True),
     read_only("z", lambda row: row.location and row.location[2], "length", drop_if_empty=True),
-    read_only("time", lambda row: row.time, "time", text=_time, drop_if_empty=True),
+    *headed("time", "time", show=engineering, drop_if_empty=True),
 ]

@@ -74,7 +74,7 @@ def _grid(pin: PinResult, units: Units) -> Grid:
         read_only("t", lambda row: row.time, "time", drop_if_empty=True),
         read_only(" ", _remark, numeric=False),
     ]
-    return Table("places", columns, place_rows(pin, units)).grid(units)
+    return Table("places", columns, place_rows(pin)).grid(units)
 
 
 def _remark(row: PlaceRow) -> str:

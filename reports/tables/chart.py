@@ -14,8 +14,8 @@ def chart_table(chart: Chart) -> Table[ChartPoint]:
         return None if p.error is None else p.error <= chart.tolerance
 
     columns: list[Column[ChartPoint]] = [
-        Column("model", lambda p: p.model, heading="Model", numeric=False),
-        Column("element", lambda p: p.element, heading="Element", numeric=False),
+        *fields("model", heading="Model", numeric=False),
+        *fields("element", heading="Element", numeric=False),
         Column("dofs", lambda p: p.dofs, "", "unknowns",
                lambda p: f"{p.dofs:,}" if p.dofs and not p.failed else DASH),
         Column("seconds", lambda p: p.seconds, "", "time",

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain, islice
 from operator import attrgetter
 from pathlib import Path
@@ -39,7 +40,8 @@ class Column(Generic[R]):
     or None.
     dimension: of reports.format.units, or a function of the row where it differs from row to row.
     heading: for people, without the unit; empty for a column that is only in files.
-    text: returns the text for people, where it is more than the number.
+    text: returns the text for people of a row, where it is more than the value.
+    show: returns the text for people of a value, unless four digits are enough.
     numeric: whether the column is flush right for people.
     rank: on a narrow terminal the columns of the highest rank are left out first, those of rank 0
     never.
@@ -52,6 +54,7 @@ class Column(Generic[R]):
     dimension: str | Callable[[R], str] = ""
     heading: str = ""
     text: Callable[[R], str] | None = None
+    show: Callable[[Any], str] | None = None
     numeric: bool = True
     rank: int = 0
     drop_if_empty: bool = False
@@ -74,6 +77,8 @@ class Column(Generic[R]):
         value = self.cell(row)
         if value is None:
             return DASH
+        if self.show is not None:
+            return self.show(value)
         if isinstance(value, str):
             return value
         if isinstance(value, bool | np.bool_):
@@ -112,17 +117,32 @@ def _reader(path: str) -> Callable[[Any], Any]:
     return read
 
 
+def headed(names: str, dimension: str = "", **same: Any) -> list[Column[Any]]:
+    """Return columns of attributes (`fields`) with the key as the heading for people."""
+    columns = fields(names, dimension, **same)
+    return [replace(column, heading=column.key.replace("_", " ")) for column in columns]
+
+
 def texts(names: str, **same: Any) -> list[Column[Any]]:
     """Return columns of attributes that are texts, with the key as the heading for people."""
-    columns = fields(names, numeric=False, **same)
-    return [replace(column, heading=column.key) for column in columns]
+    return headed(names, numeric=False, **same)
 
 
-def unit_columns(names: str) -> list[Column[Any]]:
-    """Return columns of files for the units of rows with `units`. names: "stress time", for
-    instance.
+def digits(count: int) -> Callable[[float | None], str]:
+    """Return the function that shows a number with so many digits, for `Column.show`."""
+    return partial(engineering, digits=count)
+
+
+def unit_columns(names: str, of: str = "pin") -> list[Column[Any]]:
+    """Return columns of files for units. names: "stress time", for instance. of: the attribute of
+    the row that has `units`.
     """
-    return [Column(f"{name}_unit", attrgetter(f"units.{name}")) for name in names.split()]
+    return [Column(f"{name}_unit", attrgetter(f"{of}.units.{name}")) for name in names.split()]
+
+
+def or_dash(text: str) -> str:
+    """Return a text for people, a dash instead of none, for `Column.show`."""
+    return text or DASH
 
 
 @dataclass(frozen=True)
@@ -281,10 +301,9 @@ def json_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class PinRow(Generic[T]):
-    """A part of the result of a pin in a case (`of`), with the units of the results."""
+    """A part of the result of a pin in a case (`of`)."""
 
     pin: PinResult
-    units: Units
     of: T
 
 

@@ -10,7 +10,7 @@ from reports.data.requirement_pairs import REQUIREMENT_CHANGES, RequirementPair
 from reports.data.requirements import RequirementRow
 from reports.format.numbers import DASH, engineering, margin_text, short
 from reports.format.ranges import factor_text
-from reports.tables.column import Column, Table, read_only, texts
+from reports.tables.column import Column, Table, or_dash, read_only, texts
 
 MAX_SHOWN_FORCES = 30
 CHANGE_DIGITS = 3
@@ -20,7 +20,7 @@ def rows_table(comparison: RunComparison) -> Table[RowPair]:
     """Return the pins and cases that changed, the important changes first."""
 
     def both(text: Callable[[Side], str]) -> Callable[[RowPair], str]:
-        return lambda row: _from_to(*(DASH if s is None else text(s) for s in _sides(row)))
+        return lambda x: _from_to(*(DASH if s is None else text(s) for s in (x.first, x.second)))
 
     columns: list[Column[RowPair]] = [
         *texts("pin case"),
@@ -41,22 +41,18 @@ def requirements_table(comparison: RunComparison) -> Table[RequirementPair]:
         return lambda x: _from_to(*(DASH if s is None else text(s) for s in (x.first, x.second)))
 
     columns: list[Column[RequirementPair]] = [
-        read_only("pin", lambda pair: pair.row.pin, numeric=False),
-        read_only("case", lambda pair: pair.row.case or DASH, numeric=False),
-        read_only("requirement", lambda pair: pair.row.title, numeric=False),
+        *texts("row.pin"),
+        *texts("row.case", show=or_dash),
+        *texts("requirement=row.title"),
         read_only("required A → B", both(lambda row: short(row.required))),
         read_only(
             "reached A → B", both(lambda row: factor_text(row.reached, row.required)), rank=1
         ),
         read_only("outcome A → B", both(lambda row: row.outcome), numeric=False),
-        read_only("change", lambda pair: pair.change, numeric=False),
+        *texts("change"),
     ]
     changes = [x for x in REQUIREMENT_CHANGES if x != UNCHANGED]
     return Table("requirements", columns, comparison.requirements_that(*changes))
-
-
-def _sides(row: RowPair) -> tuple[Side | None, Side | None]:
-    return row.first, row.second
 
 
 def _from_to(first: str, second: str) -> str:
@@ -72,16 +68,15 @@ def changed_rows(comparison: RunComparison) -> list[RowPair]:
 def _pairs(name: str, pairs: Sequence[ValuePair]) -> Table[ValuePair]:
     """Return a table of the values that differ, by `name`."""
     columns: list[Column[ValuePair]] = [
-        read_only(name, lambda pair: pair.names[0], numeric=False),
-        read_only("A", lambda pair: _text(pair.first), numeric=False),
-        read_only("B", lambda pair: _text(pair.second), numeric=False),
+        *texts(f"{name}=names.0"),
+        *texts("A=first B=second", show=str),
     ]
     return Table("pairs", columns, pairs)
 
 
 def inputs_table(comparison: RunComparison) -> Table[ValuePair]:
     """Return the input values that differ, by key."""
-    return _pairs("input", comparison.inputs or ())
+    return _pairs("input", comparison.inputs)
 
 
 def versions_table(comparison: RunComparison) -> Table[ValuePair]:
@@ -92,8 +87,7 @@ def versions_table(comparison: RunComparison) -> Table[ValuePair]:
 def forces_table(comparison: RunComparison) -> Table[ValuePair]:
     """Return the largest forces that differ, the largest changes first."""
     columns: list[Column[ValuePair]] = [
-        read_only("case", lambda pair: pair.names[0], numeric=False),
-        read_only("connection", lambda pair: pair.names[1], numeric=False),
+        *texts("case=names.0 connection=names.1"),
         read_only(f"largest force A [{comparison.force}]", lambda pair: pair.first),
         read_only(f"B [{comparison.force}]", lambda pair: pair.second),
         read_only("change", lambda pair: per_cent(pair.change)),
@@ -104,7 +98,7 @@ def forces_table(comparison: RunComparison) -> Table[ValuePair]:
 def margins_table(comparison: RunComparison) -> Table[ValuePair]:
     """Return the least margins of safety that differ."""
     columns: list[Column[ValuePair]] = [
-        read_only("pin", lambda pair: pair.names[0], numeric=False),
+        *texts("pin=names.0"),
         read_only("least margin A", lambda pair: margin_text((pair.first or (None,))[0])),
         read_only("check A", lambda pair: (pair.first or (DASH,))[-1], numeric=False),
         read_only("least margin B", lambda pair: margin_text((pair.second or (None,))[0])),
@@ -118,10 +112,6 @@ def left_out(comparison: RunComparison) -> str:
     more = len(comparison.forces) - MAX_SHOWN_FORCES
     verb = "differs" if more == 1 else "differ"
     return f"{counted(more, 'more force')} {verb} by less." if more > 0 else ""
-
-
-def _text(value: object) -> str:
-    return DASH if value is None else str(value)
 
 
 def _range(side: Side | None) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from reports.data.mechanics import PublishedValue, ReactionTable
+from reports.data.mechanics import PublishedValue
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.files import markdown
-from reports.format.numbers import engineering, ratio
+from reports.format.numbers import ratio
 from reports.format.ranges import factor_range
-from reports.tables.column import Column, Table, fields, read_only, texts
+from reports.tables.column import Column, Table, digits, fields, headed, read_only, texts
 
 
 @dataclass(frozen=True)
@@ -27,19 +27,12 @@ class PublishedReaction:
 
 def published_reactions(results: Results) -> list[PublishedReaction]:
     """Return every reaction with a published value; `ours` is the largest over all instants."""
-    return [row for table in results.reactions for row in _rows(table)]
-
-
-def _rows(table: ReactionTable) -> list[PublishedReaction]:
-    largest = table.magnitudes.max(axis=0)
-    rows = []
-    for connection, ours in zip(table.connections, largest.tolist(), strict=True):
-        if connection in table.published:
-            theirs = table.published[connection]
-            rows.append(
-                PublishedReaction(table.case, connection, ours, theirs, ratio(ours, theirs))
-            )
-    return rows
+    return [
+        PublishedReaction(table.case, name, ours, theirs, ratio(ours, theirs))
+        for table in results.reactions
+        for name, ours in zip(table.connections, table.magnitudes.max(axis=0).tolist(), strict=True)
+        if (theirs := table.published.get(name)) is not None
+    ]
 
 
 def published_reactions_table(results: Results) -> Table[PublishedReaction]:
@@ -47,9 +40,9 @@ def published_reactions_table(results: Results) -> Table[PublishedReaction]:
     force = f" [{results.units.force}]"  # for people only
     columns: list[Column[PublishedReaction]] = [
         *texts("case connection"),
-        Column("ours", lambda row: row.ours, heading=f"ours{force}"),
-        Column("published", lambda row: row.published, heading=f"published{force}"),
-        Column("ratio", lambda row: row.ratio, heading="ours / published"),
+        *fields("ours", heading=f"ours{force}"),
+        *fields("published", heading=f"published{force}"),
+        *fields("ratio", heading="ours / published"),
     ]
     return Table("reactions_published", columns, published_reactions(results))
 
@@ -59,12 +52,9 @@ VALUE_COLUMNS: list[Column[PublishedValue]] = [
     *fields("time", "time"),
     Column("quantity", lambda v: v.quantity, "", "quantity",
            lambda v: f"{v.quantity.replace('_', ' ')} [{v.unit}]", numeric=False),
-    Column("name", lambda v: v.name, heading="of", numeric=False),
-    Column("published", lambda v: v.published, "", "published",
-           lambda v: engineering(v.published, 6)),
-    Column("ours", lambda v: v.ours, "", "ours", lambda v: engineering(v.ours, 6)),
-    Column("ratio", lambda v: ratio(v.ours, v.published), "", "ours / published",
-           lambda v: engineering(ratio(v.ours, v.published), 5)),
+    *fields("name", heading="of", numeric=False),
+    *headed("published ours", show=digits(6)),
+    Column("ratio", lambda v: ratio(v.ours, v.published), "", "ours / published", show=digits(5)),
     *fields("unit"),
     *texts("reason"),
 ]  # fmt: skip
@@ -88,14 +78,15 @@ def write_published(results: Results, directory: Path) -> None:
             (directory / f"{name}.md").write_text(text, encoding="utf-8")
 
 
+def _ratio(pin: PinResult) -> float | None:
+    return ratio(pin.max_von_mises, pin.published_max_von_mises)
+
+
 MAXIMUM_COLUMNS: list[Column[PinResult]] = [
     *texts("pin case"),
     read_only("published max", lambda pin: pin.published_max_von_mises, "stress"),
     read_only("ours", lambda pin: pin.max_von_mises, "stress"),
-    read_only(
-        "ours / published",
-        lambda pin: engineering(ratio(pin.max_von_mises, pin.published_max_von_mises), 3),
-    ),
+    read_only("ours / published", _ratio, show=digits(3)),
     read_only("published factor", lambda pin: pin.published_safety_factor, rank=1),
     read_only("our factor", factor_range, rank=2),
     read_only("our verdict", lambda pin: pin.verdict, rank=3, numeric=False),

@@ -33,8 +33,7 @@ COMPARISON_NOTE = (
     "overlap; the range over the joint is not part of them. Similar runs have similar errors, so a "
     "change within the errors may still be real."
 )
-NO_INPUTS_NOTE = "One of the runs is of an earlier version, which did not keep the inputs."
-NO_REQUIREMENTS_NOTE = "One of the runs is of an earlier version, which lists no requirements."
+
 MAX_NAMED_PINS = 6  # largest number of pins named in a sentence
 NUMBER_WORDS = (
     *("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
@@ -54,8 +53,7 @@ def review(comparison: RunComparison) -> str:
     if more := len(changes) - len(shown):
         shown.append(f"{more} more pin{'s' * (more > 1)}")
     factors = ", ".join(shown) or "no factor of a pin changed"
-    parts = [factors, _requirement_changes(comparison)]
-    text = "; ".join(part for part in parts if part)
+    text = f"{factors}; {_requirement_changes(comparison)}"
     return f"{text[0].upper()}{text[1:]}."
 
 
@@ -96,8 +94,6 @@ def _apart(*factors: float | None) -> list[str]:
 
 def _requirement_changes(comparison: RunComparison) -> str:
     """Return the numbers of requirements that were met or lost, in words."""
-    if comparison.requirements is None:
-        return ""
     counts = {
         change: len(comparison.requirements_that(change))
         for change in (NEWLY_MET, LOST, GONE, LOWERED)
@@ -133,11 +129,8 @@ def headline(comparison: RunComparison) -> str:
 def sections(comparison: RunComparison) -> Iterator[tuple[str, Table[Any], str]]:
     """Yield the title, the table and the remark of each group of differences."""
     remark = "" if comparison.inputs else SAME_INPUTS_NOTE
-    if comparison.inputs is None:
-        remark = NO_INPUTS_NOTE
     yield "Inputs that differ", inputs_table(comparison), remark
-    without = "" if comparison.requirements is not None else NO_REQUIREMENTS_NOTE
-    yield "Requirements that changed", requirements_table(comparison), without
+    yield "Requirements that changed", requirements_table(comparison), ""
     yield "Safety factors", rows_table(comparison), COMPARISON_NOTE
     yield "Margins of safety that differ", margins_table(comparison), ""
     yield "Forces that differ", forces_table(comparison), left_out(comparison)

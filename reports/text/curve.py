@@ -25,12 +25,9 @@ def print_curve(curve: FactorCurve, console: Console) -> None:
     here = "* as in the study. " if curve.nominal in curve.values else ""
     console.print(Text(f"{here}A row has the pin's worst case."))
     said = filter(None, [not_judged(curve.in_lugs, curve.other_checks)])
-    for line in (*_idle(curve), *reached_lines(curve), *_failures(curve), *said):
+    idle = [f"{curve.key} changes nothing here: all values have one result."] * (not curve.moves)
+    for line in (*idle, *reached_lines(curve), *_failures(curve), *said):
         console.print(Text(line))
-
-
-def _idle(curve: FactorCurve) -> list[str]:
-    return [] if curve.moves else [f"{curve.key} changes nothing here: all values have one result."]
 
 
 def reached_lines(curve: FactorCurve) -> list[str]:

@@ -17,11 +17,11 @@ from reports.text.loads import least_angle, unresolved
 
 @dataclass(frozen=True)
 class LoadsPart:
-    """A case: tables of the forces and the drives, and notes on them."""
+    """A case: notes on the forces and the drives, and their tables."""
 
     case: str
-    grids: list[Grid]
     notes: list[str]
+    grids: list[Grid]
 
 
 def load_parts(results: Results) -> list[LoadsPart]:
@@ -56,7 +56,7 @@ def _part(table: ReactionTable, results: Results) -> LoadsPart:
         if drop.case == table.case:
             notes += [f"{line[0].upper()}{line[1:]}." for line in drop_words(drop, results)]
             grids += [peak_grid(drop, results), impulse_grid(drop, results)]
-    return LoadsPart(table.case, grids, notes)
+    return LoadsPart(table.case, notes, grids)
 
 
 def _forces(table: ReactionTable, drives: list[DriveTable], results: Results) -> Grid:

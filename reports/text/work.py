@@ -24,7 +24,7 @@ def print_work(results: Results, console: Console) -> None:
     for pin, case in pairs:
         made = [m for m in results.margins if (m.pin, m.case) == (pin, case)]
         console.print(Text(f"Work: {pin}{f' ({case})' if case else ''}", "bold"))
-        for pin_margin in sorted(made, key=lambda m: (not m.margin.governs, -m.used)):
+        for pin_margin in sorted(made, key=lambda m: (not m.margin.governs, -m.margin.rank)):
             console.print(Text("\n".join(check_lines(pin_margin, results.units))))
 
 

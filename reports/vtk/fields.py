@@ -30,9 +30,9 @@ def point_data(field: Field, units: Units) -> Arrays:
     """Return the arrays at the nodes, under names with units.
 
     They are: displacement (N, 3); stress (N, 6: XX, YY, ZZ, XY, YZ, XZ, ParaView's components of a
-    symmetric tensor); von Mises (N,); von Mises envelope (N,; NaN inside); with a yield strength
-    the safety factor by the envelope; and for a pin in lugs the mean pressure of each contact cell
-    and whether the node is pressed (0 or 1).
+    symmetric tensor); von Mises (N,); von Mises envelope (N,; NaN inside and where a lug always
+    presses); with a yield strength the safety factor by the envelope; and for a pin in lugs the
+    mean pressure of each contact cell and whether the node is pressed (0 or 1).
     """
     stress = units.stress
     data: Arrays = {

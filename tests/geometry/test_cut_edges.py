@@ -132,7 +132,7 @@ def test_holes_that_all_but_touch_are_refused(holes: tuple[Hole, ...], code: str
         with raises(GeometryError, code):
             CutPin(SHAFT, holes)
     else:
-        assert len(CutPin(SHAFT, holes).holes) == 2
+        assert len(CutPin(SHAFT, holes).cuts) == 2
 
 
 def test_a_bottom_at_the_bore_is_refused() -> None:
@@ -141,7 +141,7 @@ def test_a_bottom_at_the_bore_is_refused() -> None:
         with raises(GeometryError, "thin-wall"):
             CutPin(TUBE, (Hole(0.05, 0.004, depth=depth),))
     for depth in (0.004, 0.006):
-        assert CutPin(TUBE, (Hole(0.05, 0.004, depth=depth),)).holes
+        assert CutPin(TUBE, (Hole(0.05, 0.004, depth=depth),)).cuts
     with raises(GeometryError, "hole-too-large"):
         CutPin(SHAFT, (Hole(0.05, 0.004, mouth_radius=0.009),))
 

@@ -29,7 +29,7 @@ COUNT = 4000
 
 
 def made(*cuts: Cut) -> CutPin:
-    return CutPin.of(BAR, cuts)
+    return CutPin(BAR, cuts)
 
 
 def integral(f: Callable[[Floats], Floats], low: float, high: float) -> float:
@@ -149,8 +149,8 @@ def test_mouths_of_any_radius_that_fits_are_rounded(size: float, radius: float) 
     """In metres OpenCASCADE failed at every third, and faces of wide holes "match no surface"."""
     d = 0.02 * size
     hole = Hole(0.02, d, 0.3, mouth_radius=radius * d)
-    pin = CutPin.of(Pin("B", (Segment(0.04, 0.02),)), (hole,))
-    sharp = CutPin.of(Pin("B", (Segment(0.04, 0.02),)), (replace(hole, mouth_radius=0.0),))
+    pin = CutPin(Pin("B", (Segment(0.04, 0.02),)), (hole,))
+    sharp = CutPin(Pin("B", (Segment(0.04, 0.02),)), (replace(hole, mouth_radius=0.0),))
     taken = beside_balls(0.01, d / 2.0, radius * d)  # 2 % by its sample
     assert sharp.volume - pin.volume == pytest.approx(taken, rel=0.06)
 
@@ -181,14 +181,14 @@ def beside_balls(outer: float, a: float, rho: float) -> float:
 def test_a_mouth_that_does_not_fit_is_refused_with_the_largest_that_does() -> None:
     shaft = Pin("B", (Segment(0.08, 0.02),))
     with raises(GeometryError, "radius-too-large", "at most 0.893 of its diameter"):
-        CutPin.of(shaft, (Hole(0.02, 0.0035, mouth_radius=0.0037),))
+        CutPin(shaft, (Hole(0.02, 0.0035, mouth_radius=0.0037),))
 
 
 def test_mouths_that_gmsh_cannot_round_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """It said "a dimension that is very small compared with its neighbours"."""
     monkeypatch.setattr(cut_pin, "unit_of_solid", lambda *_: 1.0)  # as OpenCASCADE cannot
     shaft = Pin("B", (Segment(0.08, 0.02),))
-    pin = CutPin.of(shaft, (Hole(0.02, 0.004, math.pi / 2.0, mouth_radius=0.0015),))
+    pin = CutPin(shaft, (Hole(0.02, 0.004, math.pi / 2.0, mouth_radius=0.0015),))
     with raises(MeshError, "mouth-not-rounded", "to 0.38 of its diameter", "or a chamfer"):
         assert pin.volume
 
@@ -212,7 +212,7 @@ def test_a_countersink_is_cut_at_any_angle() -> None:
     """OpenCASCADE lost it at the last three, where the edge of its tool just touched the pin."""
     pin = Pin("P", (Segment(0.012936, 0.0077), Segment(0.01463, 0.0077, connection="B")))
     taken = [
-        pin.volume - CutPin.of(pin, [Hole(0.009086, 0.001001, angle, chamfer=0.00015015)]).volume
+        pin.volume - CutPin(pin, [Hole(0.009086, 0.001001, angle, chamfer=0.00015015)]).volume
         for angle in (0.3, 0.8, 1.68511056923227, 2.27)
     ]
     assert taken == pytest.approx([taken[0]] * 4, rel=1e-4)
@@ -295,8 +295,8 @@ def test_a_passage_beside_a_bore() -> None:
     """It must not meet it; a rounded mouth must be on a cylinder."""
     meets: Any = (Passage(0.0, L, 0.002, 0.0049),)
     with raises(GeometryError, "meets-bore", "passage 1"):
-        CutPin(BORED, passages=meets)
-    assert CutPin(BORED, passages=(Passage(0.0, L, 0.002, 0.007),)).volume < BORED.volume
+        CutPin(BORED, meets)
+    assert CutPin(BORED, (Passage(0.0, L, 0.002, 0.007),)).volume < BORED.volume
     cone = Pin("cone", (Segment(L, 2 * R, end_diameter=R),))
     with raises(GeometryError, "mouth-not-on-cylinder", "hole 1"):
         CutPin(cone, (Hole(0.03, 2 * a, mouth_radius=RHO),))
@@ -306,13 +306,13 @@ def test_cuts_that_leave_too_little() -> None:
     """Slots across each other part the pin; a flat takes all of a band, or a slot of a flat."""
     cross = tuple(Slot(0.02, 0.04, 0.019, None, angle, 0.0, False) for angle in (0.0, math.pi / 2))
     with raises(GeometryError, "cut-apart", "pin bar", "pieces"):
-        CutPin(BAR, slots=cross).require_whole()
+        CutPin(BAR, cross).require_whole()
     narrow = Pin("N", (Segment(0.02, 2 * R), Segment(0.02, R, connection="B"), Segment(0.02, R)))
     around = tuple(Flat(0.02, 0.04, 0.003, k * math.pi / 2) for k in range(4))
     with raises(GeometryError, "cut-away", "all of B"):
-        CutPin(narrow, flats=around).require_whole()
+        CutPin(narrow, around).require_whole()
     with raises(GeometryError, "cut-away", "flat 1") as error:
         CutPin(
-            BAR, (), (Flat(0.025, 0.035, 0.0095),), (Slot(0.02, 0.04, 0.008, 0.005, 0.0),)
+            BAR, (Flat(0.025, 0.035, 0.0095), Slot(0.02, 0.04, 0.008, 0.005, 0.0))
         ).require_whole()
     assert error.value.at == ("flat", 1)

@@ -35,7 +35,7 @@ def test_a_piece_above_its_mirror_plane_is_half_of_the_whole() -> None:
         cuts={"hole 1": replace(ROUNDED, z=0.0)},
     )  # fmt: skip
     assert (half.origin, piece(ROUNDED).origin) == (0.015, 0.0)
-    ours, whole = piece_mesh(half, 0.5), CutPin.of(SHAFT, [ROUNDED])
+    ours, whole = piece_mesh(half, 0.5), CutPin(SHAFT, [ROUNDED])
     assert volume(ours) == pytest.approx(whole.volume / 2.0, rel=2e-3)
     assert ours.nodes[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     names = [name for name in ours.mesh.boundaries if half.cut_at(name)]
@@ -55,10 +55,10 @@ def test_elements_are_small_at_a_spot() -> None:
 def test_a_recess_is_meshed_as_the_cut_that_it_is() -> None:
     """Corners at the bottom of a keyway are fine in both."""
     slot = Slot(0.005, 0.02, 0.006, 0.003, radius=0.0005)
-    (recess,) = as_recesses(CutPin.of(SHAFT, [slot])).recesses
+    (recess,) = as_recesses(CutPin(SHAFT, [slot])).cuts.values()
     ours, other = (piece_mesh(piece(cut), 0.6) for cut in (recess, slot))
     assert volume(ours) == pytest.approx(volume(other), rel=2e-3)
-    assert volume(ours) == pytest.approx(CutPin.of(SHAFT, [slot]).volume, rel=2e-3)
+    assert volume(ours) == pytest.approx(CutPin(SHAFT, [slot]).volume, rel=2e-3)
     assert any(name.startswith("recess 1") for name in ours.mesh.boundaries)
 
 

@@ -60,7 +60,7 @@ def test_the_rounded_bottom_of_a_keyway_is_no_sharp_corner(radius: float, sharp:
     """
     d = 2.0 * R
     keyway = Slot(-0.25 * d, 0.6 * d, 0.3 * d, 0.125 * d, radius=radius * d)
-    pin = CutPin.of(Pin("P", (Segment(d, d, connection="A"), Segment(0.5 * d, d))), (keyway,))
+    pin = CutPin(Pin("P", (Segment(d, d, connection="A"), Segment(0.5 * d, d))), (keyway,))
     space = Discretisation(solid_mesh(pin, MeshSize()).mesh)
     assert bool(len(sharp_edges(space, surface(space), ()).corner)) == sharp
 
@@ -68,7 +68,7 @@ def test_the_rounded_bottom_of_a_keyway_is_no_sharp_corner(radius: float, sharp:
 def test_a_flat() -> None:
     """A segment of a circle is taken away; the flat's steps are inner corners without fillets."""
     d, long = 0.007, 0.02
-    pin = CutPin(BAR, (), (Flat(0.02, 0.02 + long, d, 1.0),))
+    pin = CutPin(BAR, (Flat(0.02, 0.02 + long, d, 1.0),))
     half = math.acos(d / R)
     area = R**2 * half - d * math.sqrt(R**2 - d**2)
     assert pin.volume == pytest.approx(BAR.volume - area * long, rel=1e-6)
@@ -133,15 +133,15 @@ def test_holes_may_cross_and_a_profile_keeps_its_surfaces() -> None:
 )
 def test_what_cannot_be_cut(holes: tuple[Hole, ...], flats: tuple[Flat, ...], code: str) -> None:
     with raises(GeometryError, code, "pin bar, ") as error:
-        CutPin(BAR, holes, flats)
+        CutPin(BAR, (*holes, *flats))
     assert error.value.at == ("hole" if holes else "flat", 1)
 
 
 def test_flats_that_leave_nothing_between_them() -> None:
     """Opposite flats are a tang; four of them with holes across may part the pin."""
-    pin = CutPin(BAR, (), (Flat(0.02, 0.04, 0.004), Flat(0.02, 0.04, 0.004, math.pi)))
+    pin = CutPin(BAR, (Flat(0.02, 0.04, 0.004), Flat(0.02, 0.04, 0.004, math.pi)))
     assert pin.volume < BAR.volume
-    buried = CutPin(BAR, (), (Flat(0.02, 0.04, 0.004), Flat(0.025, 0.035, 0.008)))
+    buried = CutPin(BAR, (Flat(0.02, 0.04, 0.004), Flat(0.025, 0.035, 0.008)))
     with raises(GeometryError, "cut-away", "flat 2") as error:
         solid_mesh(buried, MeshSize())
     assert error.value.at == ("flat", 2)
@@ -170,7 +170,7 @@ def test_surfaces_of_a_cut_pin_have_names() -> None:
 def test_a_pin_that_is_parted_is_refused() -> None:
     """Four flats, none of which reaches the axis, and holes through what they leave."""
     flats = tuple(Flat(0.02, 0.04, 0.002, k * math.pi / 2) for k in range(4))
-    pin = CutPin(BAR, (Hole(0.03, 0.006),), flats)
+    pin = CutPin(BAR, (Hole(0.03, 0.006), *flats))
     with raises(GeometryError, "cut-apart", "pin bar", "2 pieces"):
         solid_mesh(pin, MeshSize())
 
@@ -178,6 +178,6 @@ def test_a_pin_that_is_parted_is_refused() -> None:
 @pytest.mark.parametrize("name", ["hole 1", "hole 1 wall"])
 def test_a_band_has_not_the_name_of_a_cut(name: str) -> None:
     bar = Pin("bar", (Segment(0.06, 0.02, connection=name),))
-    CutPin(bar, flats=(Flat(0.0, 0.01, 0.008),))
+    CutPin(bar, (Flat(0.0, 0.01, 0.008),))
     with raises(GeometryError, "duplicate-name", name):
         CutPin(bar, (Hole(0.03, 0.004),))

@@ -35,7 +35,7 @@ PINS = {
 
 
 def piece(*cuts: Cut) -> Piece:
-    pin = CutPin.of(SHAFT, cuts)
+    pin = CutPin(SHAFT, cuts)
     assert isinstance(pin, CutPin)
     (found,) = pieces(pin, (), PIECE_REACH)
     return found

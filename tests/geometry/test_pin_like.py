@@ -24,7 +24,7 @@ TURNED = Pin(
     fillet=0.004,
 )
 
-CUT = CutPin(TURNED, (Hole(0.03, 0.003),), (Flat(0.045, 0.05, 0.009),))
+CUT = CutPin(TURNED, (Hole(0.03, 0.003), Flat(0.045, 0.05, 0.009)))
 
 
 @pytest.mark.parametrize("pin", [TURNED, CUT], ids=["turned", "cut"])
@@ -45,7 +45,7 @@ def test_both_have_one_face(pin: PinLike) -> None:
 def test_only_one_is_the_same_all_round() -> None:
     assert TURNED.revolved
     assert not CUT.revolved
-    whole = CutPin(TURNED, (), ())
+    whole = CutPin(TURNED)
     assert whole.revolved
     assert whole.volume == TURNED.volume
 

@@ -104,7 +104,7 @@ def test_prisms_are_flats_of_the_cylinder_through_their_edges(
     cuts = [cut for cut in profile.cuts if isinstance(cut, Flat)]
     assert {round(cut.distance / MM, 6) for cut in cuts} == distances
     assert len(cuts) == len(profile.cuts) == flats
-    pin = CutPin.of(profile.pin("P"), profile.cuts)
+    pin = CutPin(profile.pin("P"), profile.cuts)
     assert pin.volume == pytest.approx(volume, rel=1e-6)
 
 

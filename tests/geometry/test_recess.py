@@ -45,7 +45,7 @@ def test_a_solid_of_no_known_kind_is_a_recess(change: Change, tmp_path: Path) ->
     same(found, PROFILES["sharp"])
     (recess,) = found.cuts
     assert isinstance(recess, Recess)
-    made = CutPin.of(found.pin("P"), found.cuts)
+    made = CutPin(found.pin("P"), found.cuts)
     assert made.volume == pytest.approx(cad_volume(file), rel=1e-5)
 
 
@@ -57,10 +57,10 @@ def test_known_cuts_beside_a_recess_stay_known(tmp_path: Path) -> None:
         ((_, solid),) = gmsh.model.occ.getEntities(3)
         turn(gmsh, solid)
 
-    file = step(CutPin.of(PROFILES["sharp"], [Hole(10.0, 4.0, 0.3)]), tmp_path / "pin.step", change)
+    file = step(CutPin(PROFILES["sharp"], [Hole(10.0, 4.0, 0.3)]), tmp_path / "pin.step", change)
     found = recognised_profile(file)
     assert sorted(cut.what for cut in found.cuts) == ["hole", "recess"]
-    made = CutPin.of(found.pin("P"), found.cuts)
+    made = CutPin(found.pin("P"), found.cuts)
     assert made.volume == pytest.approx(cad_volume(file), rel=1e-5)
 
 
@@ -114,8 +114,9 @@ def test_what_it_takes_of_the_surface_is_within_its_mouth(cut: Hole | Slot) -> N
     """Also where it goes on to an end of the pin."""
     around, z = np.meshgrid(np.linspace(-3.1, 3.1, 60), np.linspace(0.001, 0.0591, 60))
     x = np.stack([0.01 * np.cos(around), 0.01 * np.sin(around), z], axis=-1).reshape(-1, 3)
-    made = as_recesses(CutPin.of(SHAFT, [cut]))
-    (recess,) = made.recesses
+    made = as_recesses(CutPin(SHAFT, [cut]))
+    (recess,) = made.cuts.values()
+    assert isinstance(recess, Recess)
     wanted = cut.takes(x, 0.01)
     assert (recess.takes(x, 0.01) == wanted).mean() > 0.999
     c, s = math.cos(0.4), math.sin(0.4)
@@ -126,7 +127,8 @@ def test_what_it_takes_of_the_surface_is_within_its_mouth(cut: Hole | Slot) -> N
 def test_a_recess_that_is_turned_and_moved_is_the_same_elsewhere() -> None:
     """Beside the hole of which it is made, turned and moved by hand."""
     angle, shift, chance = 0.7, 0.004, np.random.default_rng(2)
-    (recess,) = as_recesses(CutPin.of(SHAFT, [Hole(0.03, 0.006, 0.3)])).recesses
+    (recess,) = as_recesses(CutPin(SHAFT, [Hole(0.03, 0.006, 0.3)])).cuts.values()
+    assert isinstance(recess, Recess)
     moved = recess.turned(recess.angle + angle).along(lambda a, b: (a + shift, b + shift))
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -147,7 +147,7 @@ def test_faces_may_be_split(name: str, tmp_path: Path) -> None:
 
 def test_holes_and_flats_become_features(tmp_path: Path) -> None:
     hole, flat = Hole(30.0, 4.0, math.pi / 6.0), Flat(45.0, 55.0, 8.0, -math.pi / 3.0)
-    pin = CutPin(PROFILES["stepped"], (hole,), (flat,))
+    pin = CutPin(PROFILES["stepped"], (hole, flat))
     found = recognised_profile(step(pin, tmp_path / "pin.step"))
     same(found, PROFILES["stepped"])
     a, b = found.cuts
@@ -184,7 +184,7 @@ CUTS: dict[str, Cut] = {
 def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
     """And the volume of what is made of it is that of the body, or it would not be."""
     cut = CUTS[name]
-    found = recognised_profile(step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step"))
+    found = recognised_profile(step(CutPin(PROFILES["stepped"], [cut]), tmp_path / "pin.step"))
     same(found, PROFILES["stepped"])
     (made,) = found.cuts
     assert isinstance(made, Hole | Flat | Slot | Passage)
@@ -201,7 +201,7 @@ def test_a_cut_is_recognised(name: str, tmp_path: Path) -> None:
 def test_a_splined_end_is_its_slots(tmp_path: Path) -> None:
     """Walls and floors of opposite slots face each other, and are not those of one."""
     slots = [Slot(45.0, 60.0, 3.0, 2.0, k * math.pi / 4.0, 0.0, False) for k in range(8)]
-    file = step(CutPin.of(PROFILES["sharp"], slots), tmp_path / "pin.step")
+    file = step(CutPin(PROFILES["sharp"], slots), tmp_path / "pin.step")
     found = recognised_profile(file)
     same(found, PROFILES["sharp"])
     assert len(found.cuts) == 8
@@ -216,7 +216,7 @@ def test_cuts_of_several_kinds_of_a_body_that_lies_anyhow(tmp_path: Path) -> Non
         Hole(15.0, 4.0, 0.3), Flat(10.0, 20.0, 8.0, 0.3), Hole(40.0, 3.0, 1.0, 8.0),
         Slot(30.0, 45.0, 4.0, 3.0, 2.8, 0.4), Passage(0.0, 60.0, 2.0, 7.0, -1.5),
     )  # fmt: skip
-    file = step(CutPin.of(tube, cuts), tmp_path / "pin.step", turn)
+    file = step(CutPin(tube, cuts), tmp_path / "pin.step", turn)
     found = recognised_profile(file)
     assert sorted(cut.what for cut in found.cuts) == ["flat", "hole", "hole", "passage", "slot"]
 
@@ -232,7 +232,7 @@ INCH = (
 def test_a_file_in_inches(tmp_path: Path) -> None:
     """The unit is in the file's header, and what is read is in millimetres."""
     cut = CUTS["keyway"]
-    file = step(CutPin.of(PROFILES["stepped"], [cut]), tmp_path / "pin.step")
+    file = step(CutPin(PROFILES["stepped"], [cut]), tmp_path / "pin.step")
     text = file.path.read_text()
     (before,) = set(re.findall(r"\( *LENGTH_UNIT\(\) NAMED_UNIT\(\*\) SI_UNIT\([^)]*\) *\)", text))
     text = text.replace(before, INCH[0]).replace("ENDSEC;\nEND-ISO", INCH[1])

@@ -21,7 +21,7 @@ PIN = Pin(
     fillet=0.125,
 )
 
-CUT = CutPin(PIN, (Hole(2.0, 0.25, 0.3),), (Flat(2.5, 3.0, 0.4, 1.0),))
+CUT = CutPin(PIN, (Hole(2.0, 0.25, 0.3), Flat(2.5, 3.0, 0.4, 1.0)))
 MICROMETRE, KILOMETRE = 2.0**-20, 2.0**10
 
 

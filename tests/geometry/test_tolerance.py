@@ -111,8 +111,8 @@ def test_fillets_that_take_a_whole_shaft_meet_in_one_circle() -> None:
 
 def test_flats_end_where_a_band_does() -> None:
     profile = Pin("P", SHAFT)
-    cut = CutPin(profile, (), (Flat(0.02 + 1e-13, 0.05 - 1e-13, 0.008),))
-    assert (cut.flats[0].z0, cut.flats[0].z1) == (profile.stations[1], profile.stations[2])
+    cut = CutPin(profile, (Flat(0.02 + 1e-13, 0.05 - 1e-13, 0.008),))
+    assert cut.cuts["flat 1"].extent == (profile.stations[1], profile.stations[2])
     named = solid_mesh(cut, MeshSize(across=2.0)).mesh.boundaries
     assert {"flat 1", "B", "segment 1", "segment 3"} <= set(named)
 
@@ -141,4 +141,4 @@ def test_a_cut_that_just_touches(
     holes: tuple[Hole, ...], flats: tuple[Flat, ...], code: str
 ) -> None:
     with raises(GeometryError, code, "hole 1" if holes else "flat 1"):
-        CutPin(Pin("P", SHAFT), holes, flats)
+        CutPin(Pin("P", SHAFT), (*holes, *flats))

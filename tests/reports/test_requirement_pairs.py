@@ -109,10 +109,3 @@ def test_pins_that_come_and_go(run: dict[str, Any]) -> None:
         row["pin"] = "F"
     found = compared(run, other, ("a", "b"))
     assert review(found).startswith("Pin E is gone, pin F is new; ")
-
-
-def test_a_run_of_an_earlier_version_lists_none(run: dict[str, Any]) -> None:
-    old = {key: value for key, value in run.items() if key != "requirements"}
-    found = compared(old, run, ("a", "b"))
-    assert found.requirements is None
-    assert review(found) == "No factor of a pin changed."

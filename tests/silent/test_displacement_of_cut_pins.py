@@ -35,7 +35,7 @@ D, R = 0.02, 0.01
 LENGTH, AT = 0.21, 0.2  # of the bar, and where its load acts (the middle of its band)
 BAR = Pin("bar", (Segment(0.19, D, name="shaft"), Segment(0.02, D, connection="B")))
 LOW, HIGH, FLAT = 0.03, 0.15, 0.006  # flats from, to, and their distance from the axis
-FLATS = CutPin.of(BAR, [Flat(LOW, HIGH, FLAT, a, 0.002) for a in (0.0, math.pi)])
+FLATS = CutPin(BAR, [Flat(LOW, HIGH, FLAT, a, 0.002) for a in (0.0, math.pi)])
 
 
 def loaded(force: list[float], moment: list[float] | None = None) -> PinLoads:
@@ -143,7 +143,7 @@ def test_the_tip_moves_as_that_of_a_beam_of_the_reduced_section(bar_with_flats: 
 
 def test_there_is_no_jump_where_pieces_begin_and_end() -> None:
     """On the outline, between the last points of a piece and what lies beyond it."""
-    pin = CutPin.of(BAR, [Hole(0.05, 0.014, 0.3), Hole(0.12, 0.008, 1.2)])
+    pin = CutPin(BAR, [Hole(0.05, 0.014, 0.3), Hole(0.12, 0.008, 1.2)])
     (solution,) = solve_pin(pin, STEEL, ("start",), (ALL,), QUICK)
     answer = solution.answer
     assert isinstance(answer, CutField)
@@ -227,12 +227,12 @@ def test_all_of_the_surface_moves_as_that_of_the_whole_solid(name: str) -> None:
     """
     pin, cuts, clamps, loads = WHOLE[name]
     meshes = 2 if clamps and len(cuts) == 1 else 1
-    local = shown(CutPin.of(pin, cuts), clamps, loads, QUICK)
-    solid = shown(CutPin.of(pin, cuts), clamps, loads, Requirement(0.1, "solid", meshes=meshes))
+    local = shown(CutPin(pin, cuts), clamps, loads, QUICK)
+    solid = shown(CutPin(pin, cuts), clamps, loads, Requirement(0.1, "solid", meshes=meshes))
     x, u = local.points, local.displacement
     there = np.ones(len(x), dtype=bool)
     if len(cuts) == 2 and clamps:  # each piece has the pin's outline where the other one's cut is
-        (solution,) = solve_pin(CutPin.of(pin, cuts), STEEL, clamps, (loads,), QUICK)
+        (solution,) = solve_pin(CutPin(pin, cuts), STEEL, clamps, (loads,), QUICK)
         there = _own(solution.answer, len(x), x[:, 2])
     off = u - between(solid.points, solid.displacement, x)
     if not clamps:

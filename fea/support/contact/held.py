@@ -124,7 +124,7 @@ class HeldContact:
         if cut is None:
             return model.pin
         whole = replace(cut, profile=model.whole)
-        ringed = CutPin.of(model.pin, cut.cuts.values())
+        ringed = CutPin(model.pin, cut.cuts.values())
         made = {f.name: getattr(ringed, f.name) for f in fields(ringed)}
         return RingedCutPin(**made, whole=whole)
 

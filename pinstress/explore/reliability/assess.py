@@ -46,6 +46,7 @@ from pinstress.study.model.hardened import require_strengths
 from pinstress.study.model.lugs import with_given_lugs
 from pinstress.study.model.requirements import checks_besides_yield
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import SYSTEM_ROW, Driver, FirstOrder, Reliability, Spread
 from reports.data.results import Results
@@ -80,9 +81,10 @@ def assess(
     cluster: solves the samples instead of local processes; solved designs are kept in the user's
     cache.
 
-    Raises: InputError for a study without random numbers or without strengths.
+    Raises: InputError for a study without random numbers or without strengths, and if a file of the
+    study changes meanwhile.
     """
-    settings = study.table.reliability
+    settings, before = study.table.reliability, inputs(study)
     parameters, space = random_numbers(study)
     laws = {path for p in parameters for path in p.number.paths}
     described = without_strength_ranges(study, laws)
@@ -101,6 +103,7 @@ def assess(
     centres = [c for form in forms for c in form.centres]
     weighted = weighted_sample(designs, centres, settings)
     shares = _indices(designs, settings) if space.lower is None else None
+    require_unchanged(study, before)
     materials = {name: pin.material for name, pin in study.table.pin.items()}
     open_rows = replace(
         nominal, pins=tuple(with_open_ranges(p, laws, materials[p.pin]) for p in nominal.pins)

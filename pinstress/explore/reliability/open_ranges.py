@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from fea.support.records import TOGETHER, Variation
-from pinbase.grouped import grouped
 from pinbase.keys import key_part
 from pinstress.explore.sweep.number import Path
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import changed_study
 from reports.data.row import LandingRange, PinResult
-from reports.data.unknowns import factor_spread
+from reports.data.unknowns import factor_spread, growth_beneath
 
 CLEARANCE = "clearance"  # of all lugs of a joint, which are varied together
 CLEARANCE_KEYS = (CLEARANCE, "interference", "fit")
@@ -63,34 +60,7 @@ def growth(row: PinResult | None) -> tuple[float, float]:
     spread = factor_spread(row) if row else None
     if row is None or spread is None or not row.safety_factor:
         return 1.0, 1.0
-    return max(row.safety_factor / spread[0], 1.0), _growth_beneath(row)
-
-
-def _growth_beneath(row: PinResult) -> float:
-    """Return the growth of the stress beneath contact, as `growth` does; 1 without contact."""
-    contact = row.places.contact if row.places else None
-    if contact is None or not contact.beneath:
-        return 1.0
-    ratios = list[float]()
-    if row.joint is not None and row.joint.range is not None:
-        ratios += _ratios_over_joint(row.joint.range.variations, contact.beneath)
-    if row.landing is not None and row.landing.beneath is not None:
-        ratios.append(float(row.landing.beneath.max()) / contact.beneath)
-    if row.sharing is not None and row.sharing.beneath is not None:
-        ratios.append(row.sharing.beneath[1] / contact.beneath)
-    if row.strength_range is not None and row.yield_strength:
-        ratios.append(row.yield_strength / row.strength_range[0])
-    return math.prod(max(1.0, ratio) for ratio in ratios)
-
-
-def _ratios_over_joint(variations: Iterable[Variation], beneath: float) -> Iterable[float]:
-    """Return the largest ratio of the stress beneath contact over each property of the joint, or
-    over all properties where they were solved together.
-    """
-    known = [(x.what, (x.beneath or 0.0) / beneath) for x in variations]
-    together = any(what == TOGETHER for what, _ in known)
-    groups = grouped(("" if together else what, ratio) for what, ratio in known)
-    return [max(ratios) for ratios in groups.values()]
+    return max(row.safety_factor / spread[0], 1.0), growth_beneath(row)
 
 
 def left_out(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,41 +29,25 @@ class RiskColumn:
 
     row: int | None
 
-    def of(self, answers: Answers) -> tuple[Array, Array]:
-        """Return the utilisations and their relative errors, (n,) each."""
-        selected = answers.system if self.row is None else answers
-        return selected.used[:, self.row or 0], selected.errors[:, self.row or 0]
+    def of(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return the column (n,) of values (n, r) for each design and row; of the system, the
+        largest of all rows, unknown if that of any row is.
+        """
+        return np.asarray(values.max(axis=1) if self.row is None else values[:, self.row])
 
     def deep(self, answers: Answers, growths: Array = NO_GROWTH) -> Array:
         """Return the utilisation (n,), or that beneath contact if it is larger.
 
         growths: (rows, 2) factors on the stress of each row, and on that beneath contact.
         """
-        deep = np.maximum(answers.used * growths[:, 0], answers.beneath * growths[:, 1])
-        return np.asarray(deep.max(axis=1) if self.row is None else deep[:, self.row])
+        return self.of(np.maximum(answers.used * growths[:, 0], answers.beneath * growths[:, 1]))
 
-    def increased(self, answers: Answers, part: float) -> Array:
-        """Return the utilisation (n,) with each stress increased by a part of its error.
-
-        For the system it is the largest of all rows after this increase, because the row with the
-        largest stress need not have the largest error.
+    def error(self, answers: Answers) -> Array:
+        """Return the relative errors of the stress, (n,); of the system, those of the row with the
+        largest utilisation.
         """
-        used = answers.used * (1.0 + part * answers.errors)
-        return np.asarray(used.max(axis=1) if self.row is None else used[:, self.row])
-
-    def unbounded(self, answers: Answers) -> NDArray[np.bool_]:
-        """Return whether the governing stress is unbounded, (n,)."""
         selected = answers.system if self.row is None else answers
-        return np.asarray(selected.unbounded[:, self.row or 0])
-
-    def loose(self, answers: Answers) -> NDArray[np.bool_]:
-        """Return whether the pin comes loose, (n,)."""
-        selected = answers.system if self.row is None else answers
-        return np.asarray(selected.loose[:, self.row or 0])
-
-    def depends(self, answers: Answers) -> bool:
-        """Whether the stress beneath contact governs in any design."""
-        return bool(answers.depends.any() if self.row is None else answers.depends[self.row])
+        return selected.errors[:, self.row or 0]
 
 
 @dataclass(frozen=True)
@@ -77,15 +62,17 @@ class Sample:
     ) -> Estimate:
         """Return the probability of failure.
 
-        part: fraction of its error by which each stress is increased.
+        part: fraction of its error by which each stress is increased. For the system this comes
+        first, because the row with the largest stress need not have the largest error.
         """
-        margin = 1.0 - settings.factor * column.increased(self.answers, part)
+        increased = self.answers.used * (1.0 + part * self.answers.errors)
+        margin = 1.0 - settings.factor * column.of(increased)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def unbounded(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the probability of failure or of unbounded stress, which has no factor."""
-        margin = 1.0 - settings.factor * column.increased(self.answers, 0.0)
-        margin = np.where(column.unbounded(self.answers), -1.0, margin)
+        margin = 1.0 - settings.factor * column.of(self.answers.used)
+        margin = np.where(column.of(self.answers.unbounded), -1.0, margin)
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def deep(
@@ -100,15 +87,17 @@ class Sample:
 
     def loose(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the probability that the pin comes loose."""
-        margin = np.where(column.loose(self.answers), -1.0, 1.0)
-        failed = np.isnan(column.of(self.answers)[0])  # a design that failed may come loose or not
+        margin = np.where(column.of(self.answers.loose), -1.0, 1.0)
+        failed = np.isnan(
+            column.of(self.answers.used)
+        )  # a design that failed may come loose or not
         margin[failed & (margin > 0.0)] = np.nan
         return probability(self.draws, margin, 0.0, settings.confidence)
 
     def quantile(self, settings: ReliabilityTable, column: RiskColumn) -> Estimate:
         """Return the quantile of the safety factor at the probability of the settings."""
         with np.errstate(divide="ignore"):
-            factors = 1.0 / column.of(self.answers)[0]
+            factors = 1.0 / column.of(self.answers.used)
         return quantile(self.draws, factors, settings.probability, settings.confidence)
 
 
@@ -156,77 +145,40 @@ def risk_of(
         error_known=nominal is None or nominal.maximum.bounded,
     )
     best = weighted if weighted and bare.by_weights else sampled
+    column, every = row.column, [x.answers for x in (sampled, weighted) if x]
+    grown = np.broadcast_to(growths, (sampled.answers.used.shape[1], 2)) != 1.0
+
+    def spread(holds: bool | np.bool_, estimate: Callable[[Sample], Estimate]) -> Spread | None:
+        """Return the probability that is surer by the two samples; None unless `holds`."""
+        narrow = _bounded(estimate(weighted)) if holds and weighted else None
+        return _bounded(estimate(sampled)).or_narrower(narrow) if holds else None
+
     return replace(
         bare,
         mesh=_by_errors(best, row, settings),
         joint=_by_joint(best, row, settings),
-        beneath=_beneath(sampled, weighted, row, settings),
-        over_open=_over_open(sampled, weighted, row, settings, growths),
-        unbounded=_unbounded(sampled, weighted, row, settings),
-        loose=_loose(sampled, weighted, row, settings),
+        beneath=spread(
+            any(column.of(x.deep > x.used).any() for x in every),
+            lambda sample: sample.deep(settings, column),
+        ),
+        over_open=spread(
+            column.of(grown.any(axis=1)[None])[0],
+            lambda sample: sample.deep(settings, column, growths),
+        ),
+        unbounded=spread(
+            any(column.of(x.unbounded).any() for x in every),
+            lambda sample: sample.unbounded(settings, column),
+        ),
+        loose=spread(
+            any(column.of(x.loose).any() for x in every),
+            lambda sample: sample.loose(settings, column),
+        ),
         curve=(*_curve(sampled, row, 0), *(_curve(weighted, row, 1) if weighted else ())),
     )
 
 
-def _beneath(
-    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
-) -> Spread | None:
-    """Return the probability of failure with the stress beneath contact; None if that stress never
-    governs.
-    """
-    if not any(row.column.depends(x.answers) for x in (sampled, weighted) if x):
-        return None
-    return _narrower(lambda sample: sample.deep(settings, row.column), sampled, weighted)
-
-
-def _over_open(
-    sampled: Sample,
-    weighted: Sample | None,
-    row: AssessedRow,
-    settings: ReliabilityTable,
-    growths: Array,
-) -> Spread | None:
-    """Return the probability of failure at the worst end of all open ranges, with the stress
-    beneath contact; None if no range raises the stress.
-    """
-    every = np.broadcast_to(growths, (sampled.answers.used.shape[1], 2))
-    its = every if row.column.row is None else every[row.column.row]
-    if np.all(its == 1.0):
-        return None
-    return _narrower(lambda sample: sample.deep(settings, row.column, growths), sampled, weighted)
-
-
-def _unbounded(
-    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
-) -> Spread | None:
-    """Return the probability of failure or of unbounded stress; None if the stress is bounded in
-    all designs.
-    """
-    if not any(row.column.unbounded(x.answers).any() for x in (sampled, weighted) if x):
-        return None
-    return _narrower(lambda sample: sample.unbounded(settings, row.column), sampled, weighted)
-
-
-def _loose(
-    sampled: Sample, weighted: Sample | None, row: AssessedRow, settings: ReliabilityTable
-) -> Spread | None:
-    """Return the probability that the pin comes loose; None if it does so in no design."""
-    if not any(row.column.loose(x.answers).any() for x in (sampled, weighted) if x):
-        return None
-    return _narrower(lambda sample: sample.loose(settings, row.column), sampled, weighted)
-
-
-def _narrower(
-    estimate: Callable[[Sample], Estimate], sampled: Sample, weighted: Sample | None
-) -> Spread:
-    """Return the estimate by plain or by importance sampling, whichever interval is narrower."""
-    return _bounded(estimate(sampled)).or_narrower(
-        _bounded(estimate(weighted)) if weighted else None
-    )
-
-
 def _by_errors(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByErrors | None:
-    used, errors = row.column.of(best.answers)
+    used, errors = row.column.of(best.answers.used), row.column.error(best.answers)
     known = errors[np.isfinite(used) & (used > 0.0)]
     if not len(known):
         return None
@@ -243,7 +195,7 @@ def _by_joint(best: Sample, row: AssessedRow, settings: ReliabilityTable) -> ByE
     span = nominal.joint.range if nominal and nominal.joint else None
     if span is None or nominal is None or not nominal.max_von_mises or row.column.row is None:
         return None
-    used, _ = row.column.of(best.answers)
+    used = row.column.of(best.answers.used)
     scales = [end / nominal.max_von_mises for end in span.max_von_mises]
     ends = (
         _bounded(
@@ -258,7 +210,7 @@ def _curve(sample: Sample, row: AssessedRow, way: int) -> tuple[tuple[float, flo
     """Return points of the distribution of the factor of safety, evenly spaced in normal
     deviates.
     """
-    used, _ = row.column.of(sample.answers)
+    used = row.column.of(sample.answers.used)
     known = np.isfinite(used) & (used > 0.0)
     order = np.argsort(-used[known], kind="stable")
     factors = 1.0 / used[known][order]

@@ -14,7 +14,7 @@ from pinstress.analysis.cache import user_cache
 from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE
 from pinstress.analysis.results import solve
-from pinstress.explore.size.lightest_pin import Lightest, Start, as_it_is, lightest_pin
+from pinstress.explore.size.lightest_pin import Lightest, as_it_is, lightest_pin
 from pinstress.explore.size.other_dimensions import written_study
 from pinstress.explore.size.pin_shape import VariedShape
 from pinstress.explore.size.scaled_study import resized_study
@@ -188,11 +188,11 @@ def _all(
     log.begin()
     if jobs > 1:
         preload(*LEAST_WEIGHT_MODULES)
-    starts = {x.pin: Start(x.values, x.scale, x.whole, x.decided) for x in before.values()}
+
     heavy = sorted(names, key=lambda n: -len(study.table.pin[n].profile or ()))  # the longest first
     todo = [n for n in heavy if log.get(n) is None]
     work = [
-        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, starts.get(n))) for n in todo
+        Job(f"pin {n}", partial(lightest_pin, study, plan, n, aim, before.get(n))) for n in todo
     ]
     died: dict[str, Lightest] = {}
 

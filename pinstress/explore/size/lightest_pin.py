@@ -63,7 +63,8 @@ class Lightest:
     binding: the active constraints, in words, with their multipliers.
     solved: number of solved designs.
     way: why the pin is only scaled, or left as given, or why the search did not converge.
-    decided: as in Start.
+    decided: cases in which no singularity may govern; None: those in which none governs in the pin
+    as given.
     """
 
     pin: str
@@ -86,41 +87,25 @@ class Lightest:
         return self.way.startswith(LEFT_AS_IT_IS)
 
 
-@dataclass(frozen=True)
-class Start:
-    """The start of a search: a pin's last design, as found under other loads.
-
-    values: its dimensions by key, m.
-    scale: its scale, if it is only scaled.
-    whole: its dimensions if it were only scaled, m.
-    decided: cases in which no singularity may govern; by default those in which none governs in the
-    pin as given.
-    """
-
-    values: dict[str, float] | None = None
-    scale: float | None = None
-    whole: tuple[float, ...] | None = None
-    decided: frozenset[str] | None = None
-
-
 def lightest_pin(
     study: Study,
     plan: Plan,
     pin: str,
     aim: WeightGoal,
-    start: Start | None = None,
+    start: Lightest | None = None,
     tell: Tell = lambda _: None,
 ) -> Lightest:
     """Find the lightest design of a pin.
 
-    study: the study as given. plan: has the loads of the study as changed so far.
+    study: the study as given. plan: has the loads of the study as changed so far. start: the last
+    design, as found under other loads.
 
     Failures are reported in the result.
     """
     problem = problem_of(study, plan, pin, aim)
     if isinstance(problem, str):
         return Lightest(pin, why=problem)
-    start = start or Start()
+    start = start or Lightest(pin)
     stress = PinStress(problem, tell)
     before: float | None = None
     try:
@@ -168,7 +153,7 @@ def as_it_is(study: Study, aim: WeightGoal, result: Lightest, why: str) -> Light
     )  # fmt: skip
 
 
-def _only_scaled(stress: PinStress, aim: WeightGoal, start: Start) -> Lightest:
+def _only_scaled(stress: PinStress, aim: WeightGoal, start: Lightest) -> Lightest:
     """Scale all dimensions by one number, as `size` does, without derivatives."""
     problem, first = stress.problem, start.scale or 1.0
     factors: dict[float, float] = {}

@@ -285,11 +285,13 @@ def _verified(search: _Search, scale: float, result: SizingResult) -> SizingResu
         if factor < required and scale == limit.scale:
             return _limited(search, limit, result)
         known = [x.trial for x in search.full if (x.trial.factor >= required)]
+        # Quick solutions have the stress as described only.
+        alike = [x.trial for x in search.full] if sized.over_ranges else search.trials
         if sized.standard is not None:
-            scale = _next_standard(sized, scale)
+            # Over ranges the first full solution may be many standard diameters too small.
+            needed = _next(alike, aim) if sized.over_ranges else 0.0
+            scale = max(_next_standard(sized, scale), needed)
         else:
-            # Quick solutions have the stress as described only.
-            alike = [x.trial for x in search.full] if sized.over_ranges else search.trials
             scale = _next(alike, aim)
             # Stay between the known scales where the scatter of errors would lead out of them.
             most = min((x.scale for x in known), default=math.inf)

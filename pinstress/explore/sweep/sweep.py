@@ -21,6 +21,7 @@ from pinstress.explore.sweep.table import assembled, table_of
 from pinstress.explore.sweep.workers import BatchQueue, failed_rows, solve_here, solve_side_by_side
 from pinstress.study.reading.choices import require_count
 from pinstress.study.reading.file import Study
+from pinstress.study.reading.inputs import inputs, require_unchanged
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -69,12 +70,16 @@ class MemoryStore:
 
 @dataclass(frozen=True)
 class Sweep:
-    """A planned sweep: the parameters, and the values (N, p) of the designs in SI."""
+    """A planned sweep: the parameters, and the values (N, p) of the designs in SI.
+
+    inputs: the values of the study and the content of its files (pinstress.study.reading.inputs).
+    """
 
     study: Study
     parameters: tuple[Parameter, ...]
     values: Floats
     problem: DesignProblem
+    inputs: dict[str, str]
 
 
 def planned(
@@ -84,13 +89,13 @@ def planned(
 
     Raises: InputError.
     """
-    parameters = parameters_of(study)
+    before, parameters = inputs(study), parameters_of(study)
     correlations = correlations_of(study, parameters)
     assert study.table.vary is not None
     values = designs_of(study.table.vary, parameters, correlations)
     problem = DesignProblem.of(study, [p.number for p in parameters], pins, cases)
     require_balance(study, evaluator_of(problem), values)
-    return Sweep(study, parameters, values, problem)
+    return Sweep(study, parameters, values, problem, before)
 
 
 def solved(
@@ -120,6 +125,8 @@ def solved(
 
     def keep(batch: SolvedBatch) -> None:
         nonlocal count
+        if connection is None:  # a cluster was sent the files
+            require_unchanged(sweep.study, sweep.inputs)
         designs = zip(batch.batch.designs, batch.batch.values, batch.rows, strict=True)
         rising = sorted(designs, key=lambda design: design[0])
         store.write(

@@ -102,7 +102,7 @@ def _profiled(file: BodyFile, recognised: RecognisedProfile, clamps: set[str]) -
     ]
     try:
         profile = with_stripes(recognised.pin(file.name), stripes, start)
-        pin = CutPin.of(profile, recognised.cuts)
+        pin = CutPin(profile, recognised.cuts)
         for clamp in clamps:
             pin.surface(clamp)
     except GeometryError as error:

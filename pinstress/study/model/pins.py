@@ -166,10 +166,12 @@ def _turned(name: str, p: PinTable) -> Pin | CutPin:
         return profile
     cut = CutPin(
         profile,
-        tuple(_hole(h) for h in p.hole),
-        tuple(Flat(*f.z, f.distance, f.angle, f.radius) for f in p.flat),
-        tuple(Slot(*s.z, s.width, s.depth, s.angle, s.radius, s.ends == "round") for s in p.slot),
-        tuple(_passage(h, profile.length) for h in p.passage),
+        (
+            *(_hole(h) for h in p.hole),
+            *(Flat(*f.z, f.distance, f.angle, f.radius) for f in p.flat),
+            *(Slot(*s.z, s.width, s.depth, s.angle, s.radius, s.ends == "round") for s in p.slot),
+            *(_passage(h, profile.length) for h in p.passage),
+        ),
     )
     cut.require_whole()
     return cut

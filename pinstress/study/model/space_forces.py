@@ -101,7 +101,9 @@ def load_in_space(
     def acting(
         force: Vector, couple: Vector, factor: Varying[SpaceMotion] | None = None
     ) -> SpaceForce:
-        return SpaceForce(table.body, at, force, couple, table.follows, factor, begin, end)
+        return SpaceForce(
+            table.body, at, force, couple, table.follows, times=factor, begin=begin, end=end
+        )
 
     couple = table.moments
     out = [acting(force, couple)] if any(force) or any(couple) else []

@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from loads import MB, FileError, TableError, read_regular
+from loads import MB, TableError
 from pinbase.keys import key_part
 from pinstress.study.reading.content import system_of, table_of
 from pinstress.study.reading.counted_twice import counted_twice
@@ -22,7 +22,7 @@ from pinstress.study.reading.file_names import same_files
 from pinstress.study.reading.limits import control_characters, texts
 from pinstress.study.reading.materials import StoredMaterial, looked_up, with_materials
 from pinstress.study.reading.plausible import questions
-from pinstress.study.reading.toml_text import read_toml
+from pinstress.study.reading.toml_text import read_text, read_toml
 from pinstress.study.reading.unused import unused
 from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.shown import MAX_LISTED_NAMES, as_text, cut, in_toml
@@ -179,18 +179,7 @@ def load_study(path: str | os.PathLike[str]) -> Study:
             f"{path}: the name of this file is not UTF-8 text, and results name it; rename it",
             code="unusable-name",
         )
-    try:
-        text = read_regular(path, MAX_STUDY_SIZE).decode("utf-8-sig")
-        text = text.replace("\r\n", "\n").replace("\r", "\n")
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file", code="no-such-file") from None
-    except FileError as error:
-        raise InputError(f"{path}: {error}", code=error.code) from None
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
-        ) from None
-    return parse_study(path, text)
+    return parse_study(path, read_text(path, MAX_STUDY_SIZE))
 
 
 def parse_study(path: Path, text: str, located: bool = True) -> Study:

@@ -29,6 +29,21 @@ def inputs(study: Study) -> dict[str, str]:
     }
 
 
+def require_unchanged(study: Study, before: dict[str, str]) -> None:
+    """Raise InputError if a file that a study names has changed.
+
+    before: `inputs` when the files were read first. A command that reads them more than once would
+    otherwise mix results of the old and the new content.
+    """
+    now = inputs(study)
+    if changed := [key for key in now if now[key] != before.get(key)]:
+        raise study.error(
+            f"{', '.join(changed)}: the file has changed since the command began; start again, or "
+            "put the old file back",
+            code="changed-since",
+        )
+
+
 def _leaves(node: Any, key: str) -> Iterator[tuple[str, Any]]:
     if isinstance(node, dict):
         for name, inner in node.items():

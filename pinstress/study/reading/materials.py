@@ -14,10 +14,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from loads import MB, FileError, read_regular
+from loads import MB
 from pinbase.keys import key_part
 from pinstress.study.reading.errors import InputError
-from pinstress.study.reading.toml_text import read_toml
+from pinstress.study.reading.toml_text import read_text, read_toml
 from pinstress.study.reading.validation import explain
 from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.shown import as_text
@@ -90,15 +90,7 @@ def read_materials(path: Path) -> dict[str, StoredMaterial]:
 
     Raises: InputError.
     """
-    try:
-        text = read_regular(path, MAX_MATERIALS_SIZE).decode("utf-8-sig")
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file", code="no-such-file") from None
-    except FileError as error:
-        raise InputError(f"{path}: {error}", code=error.code) from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: is not UTF-8 text ({error})", code="unreadable") from None
-    return _materials(path, text.replace("\r\n", "\n"), path.name)
+    return _materials(path, read_text(path, MAX_MATERIALS_SIZE), path.name)
 
 
 def _materials(path: Path, text: str, file: str) -> dict[str, StoredMaterial]:

@@ -1,4 +1,4 @@
-"""The TOML of a study file, read in a time that is proportional to its length.
+"""The TOML of a file, read in a time that is proportional to its length.
 
 tomllib takes minutes and gigabytes for a key of ten thousand parts. No study needs such text, so it
 is rejected by its tokens before tomllib reads it.
@@ -11,12 +11,31 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from loads import FileError, read_regular
 from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.toml_lines import TOKEN_PATTERN
 from pinstress.study.schema.shown import cut
 
 MAX_TOML_DEPTH = 50  # tables and arrays inside each other, or parts of a dotted key
 MAX_WORD_LENGTH = 1000  # characters of a number or of a key without quotes
+
+
+def read_text(path: Path, most: int) -> str:
+    """Return the text of a file of at most this many bytes, its lines separated by LF.
+
+    Raises: InputError.
+    """
+    try:
+        text = read_regular(path, most).decode("utf-8-sig")
+    except FileNotFoundError:
+        raise InputError(f"{path}: no such file", code="no-such-file") from None
+    except FileError as error:
+        raise InputError(f"{path}: {error}", code=error.code) from None
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"{path}: is not UTF-8 text ({error}); save it with this encoding", code="unreadable"
+        ) from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def read_toml(path: Path, text: str) -> dict[str, Any]:

@@ -2,12 +2,12 @@
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.force_tables import TableFile, Tables
 from pinstress.study.schema.forces import ForceLawTable
-from pinstress.study.schema.rules import exactly_one, not_zero
+from pinstress.study.schema.rules import condition, exactly_one, not_zero
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     POSITIVE,
@@ -87,8 +87,8 @@ class GivenCase(CaseTable):
             return (self.table,)
         return tuple(self.table or ())
 
-    @model_validator(mode="after")
-    def _one_source(self) -> "GivenCase":
+    @condition
+    def _one_source(self) -> None:
         if (self.forces is None and self.moments is None) == (self.table is None):
             raise ArgumentError(
                 'give either forces = { ... }, moments = { ... } or both, or table = "file.csv"',
@@ -106,7 +106,6 @@ class GivenCase(CaseTable):
         for key in ("forces", "moments"):
             if getattr(self, key) == {}:
                 raise ArgumentError(f"{key} is empty; give at least one connection", "empty")
-        return self
 
 
 Direction = Annotated[
@@ -129,14 +128,13 @@ class ImpulseRange(StrictTable):
     pulse: Annotated[list[Pulse], Field(min_length=1)] | None = None
     """Shapes of the pulse. Default: its own."""
 
-    @model_validator(mode="after")
-    def _of_something(self) -> "ImpulseRange":
+    @condition
+    def _of_something(self) -> None:
         if self.impulse_time is None and self.velocity_change is None and self.pulse is None:
             raise ArgumentError(
                 "give one of impulse_time = [...], velocity_change = [...] and pulse = [...]",
                 "give-one",
             )
-        return self
 
 
 class ImpulseTable(StrictTable):
@@ -209,8 +207,8 @@ class ApplyTable(StrictTable):
     end: Annotated[Time, POSITIVE] | None = None
     """Time until which the load acts. Default: the end of the motion."""
 
-    @model_validator(mode="after")
-    def _one_force(self) -> "ApplyTable":
+    @condition
+    def _one_force(self) -> None:
         forces = sum(x is not None for x in (self.force, self.impulse, self.force_law))
         couples = any(self.moments) + (self.couple_law is not None)
         if forces > 1 or couples > 1 or not forces + couples:
@@ -230,7 +228,6 @@ class ApplyTable(StrictTable):
             )
         if self.end is not None and self.end <= (self.begin or 0.0):
             raise ArgumentError("end must be later than begin", "out-of-range")
-        return self
 
     @property
     def moments(self) -> tuple[float, float, float]:

@@ -3,9 +3,8 @@
 import math
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import model_validator
-
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.rules import condition
 from pinstress.study.schema.types import NOT_NEGATIVE, Angle, Duration, Length, StrictTable, Time
 
 MAX_TURNS = 1000  # limit on work, since each turn is followed in steps of 0.25 rad
@@ -31,8 +30,8 @@ class LawTable(StrictTable):
     """CSV file in the study's folder for `law = "table"`, with the columns time,position (or
     position_deg)[,velocity,acceleration]."""
 
-    @model_validator(mode="after")
-    def _course(self) -> "LawTable":
+    @condition
+    def _course(self) -> None:
         course = [getattr(self, key, None) for key in ("start", "end", "duration")]
         if self.law == "table":
             if self.table is None or any(v is not None for v in course):
@@ -44,7 +43,6 @@ class LawTable(StrictTable):
             raise ArgumentError(f'table needs law = "table", not {self.law!r}', "law-and-keys")
         elif len({v is None for v in course}) > 1:
             raise ArgumentError(f"law {self.law!r} needs start, end and duration", "law-and-keys")
-        return self
 
     @property
     def moves(self) -> bool:
@@ -75,12 +73,11 @@ class TurningDrive(LawTable):
 
     slides: ClassVar[bool] = False
 
-    @model_validator(mode="after")
-    def _few_turns(self) -> "TurningDrive":
+    @condition
+    def _few_turns(self) -> None:
         if abs((self.end or 0.0) - (self.start or 0.0)) > MAX_TURNS * 2.0 * math.pi:
             text = f"start and end are more than {MAX_TURNS} turns apart"
             raise ArgumentError(text, "out-of-range")
-        return self
 
 
 class SliderDrive(SlidingDrive):
@@ -106,15 +103,14 @@ class RotaryDrive(TurningDrive):
     against_line: tuple[str, str] | None = None
     """Two joints of that body; required with `line` and `against`."""
 
-    @model_validator(mode="after")
-    def _both(self) -> "RotaryDrive":
+    @condition
+    def _both(self) -> None:
         if (self.against == "ground" or self.line is None) != (self.against_line is None):
             raise ArgumentError(
                 "with a line, against (a body) and against_line (two of its joints) must be given "
                 "together; without one, give no against_line",
                 "give-both",
             )
-        return self
 
 
 def drive_name(drive: LawTable) -> str:

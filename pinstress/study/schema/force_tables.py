@@ -15,7 +15,7 @@ from pydantic import (
 )
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.rules import exactly_one
+from pinstress.study.schema.rules import condition, exactly_one
 from pinstress.study.schema.shown import in_toml
 from pinstress.study.schema.types import (
     Duration,
@@ -94,11 +94,10 @@ class ForceAxes(StrictTable):
     """The body on which the forces and moments act: the pin (default), or the link, which reverses
     their signs."""
 
-    @model_validator(mode="after")
-    def _right_handed(self) -> "ForceAxes":
+    @condition
+    def _right_handed(self) -> None:
         if self.axes is not None:
             _require_rotation(matrix_of(self.axes))
-        return self
 
 
 def matrix_of(axes: tuple[Any, Any, Any]) -> Matrix:

@@ -2,10 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.rules import both_or_none, exactly_one
+from pinstress.study.schema.rules import both_or_none, condition, exactly_one
 from pinstress.study.schema.types import (
     Angle,
     Coordinate,
@@ -50,11 +50,10 @@ class ForceLawTable(CurveTable):
     length_between: tuple[str, str] | None = None
     """Two joints, whose distance is the argument."""
 
-    @model_validator(mode="after")
-    def _one_argument(self) -> "ForceLawTable":
+    @condition
+    def _one_argument(self) -> None:
         if self.position_of is not None and self.length_between is not None:
             raise ArgumentError("give either position_of or length_between", "give-one")
-        return self
 
 
 class LineLawTable(StrictTable):

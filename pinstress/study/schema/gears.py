@@ -3,10 +3,10 @@
 import math
 from typing import Annotated
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field
 
 from pinbase.errors import ArgumentError
-from pinstress.study.schema.rules import both_or_none, exactly_one, require_one
+from pinstress.study.schema.rules import both_or_none, condition, exactly_one, require_one
 from pinstress.study.schema.types import (
     Angle,
     Point3,
@@ -54,12 +54,11 @@ class GearTable(StrictTable):
     """Pressure angle at the pitch circles. The teeth push each other apart with its tangent times
     the force along the pitch circle, on whichever flank they touch."""
 
-    @model_validator(mode="after")
-    def _one_size(self) -> "GearTable":
+    @condition
+    def _one_size(self) -> None:
         require_one("either teeth or radii", self.teeth, self.radii)
         if self.module is not None and self.teeth is None:
             raise ArgumentError("module needs teeth", "give-both")
-        return self
 
 
 class PinionTable(StrictTable):

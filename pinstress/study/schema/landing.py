@@ -2,12 +2,12 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Discriminator, Field, Tag, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, field_validator
 
 from loads.landing.requirements import RULES_OF_PART
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.cases import CaseTable, Coordinates
-from pinstress.study.schema.rules import exactly_one
+from pinstress.study.schema.rules import condition, exactly_one
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     ONE_OR_SEVERAL,
@@ -110,8 +110,8 @@ class TyreTable(StrictTable):
     damping: Annotated[Number, Field(ge=0.0, le=100.0)] = 0.0
     """Relative increase of the force per speed of deflection, s/m."""
 
-    @model_validator(mode="after")
-    def _one_law(self) -> "TyreTable":
+    @condition
+    def _one_law(self) -> None:
         if (self.deflection is None) != (self.force is None):
             raise ArgumentError("give both deflection and force", "give-both")
         if (self.deflection is None) == (self.at is None):
@@ -121,7 +121,6 @@ class TyreTable(StrictTable):
             )
         if len(self.deflection or ()) != len(self.force or ()):
             raise ArgumentError("give one force for each deflection", "lengths-differ")
-        return self
 
 
 class WheelTable(StrictTable):
@@ -210,11 +209,10 @@ class DropCase(AtWheel):
 
     _one_mass = exactly_one("either mass or weight", "mass", "weight")
 
-    @model_validator(mode="after")
-    def _complete_drop(self) -> "DropCase":
+    @condition
+    def _complete_drop(self) -> None:
         if self.rule is None and self.velocity is None:
             raise ArgumentError("give velocity, or a rule that prescribes it", "no-velocity")
-        return self
 
 
 Side = Literal["left", "right", "inboard", "outboard"]
@@ -325,8 +323,8 @@ class GroundCase(AtWheel):
             return RULES_OF_PART[self.part, "nose" if self.stands == "nose" else "main"]
         return (self.rule,) if self.rule is not None else ()
 
-    @model_validator(mode="after")
-    def _what_acts(self) -> "GroundCase":
+    @condition
+    def _what_acts(self) -> None:
         if not (self.rule or self.part or self.factors) or (
             self.rule and (self.part or self.factors)
         ):
@@ -351,10 +349,9 @@ class GroundCase(AtWheel):
             raise ArgumentError(
                 "give radius: the drag of a braked wheel acts at the ground", "no-radius"
             )
-        return self
 
-    @model_validator(mode="after")
-    def _one_reference(self) -> "GroundCase":
+    @condition
+    def _one_reference(self) -> None:
         given = (self.reference is not None) + (self.drop is not None)
         needed = bool(self.rules) or any(row.reference is None for row in self.factors)
         if given > 1 or given < needed:
@@ -365,4 +362,3 @@ class GroundCase(AtWheel):
                 f"rule {static} refers to the static load on the wheel: give reference",
                 "key-not-applicable",
             )
-        return self

@@ -3,10 +3,11 @@
 from itertools import pairwise
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pinbase.errors import ArgumentError
 from pinstress.study.schema.fatigue import FkmTable, SnTable
+from pinstress.study.schema.rules import condition
 from pinstress.study.schema.types import (
     Density,
     Number,
@@ -28,15 +29,14 @@ class HardenedTable(StrictTable):
     """Effective depth of the case, normal to the surface. Where it is measured to a limiting
     hardness (as in ISO 18203), `surface` is the strength that belongs to that hardness."""
 
-    @model_validator(mode="after")
-    def _softer_core(self) -> "HardenedTable":
+    @condition
+    def _softer_core(self) -> None:
         if self.core > self.surface:
             raise ArgumentError(
                 f"the core is {self.core / self.surface:.4g} times as strong as the surface; a "
                 "hardened surface is at least as strong as its core: check both, and their units",
                 "strengths-out-of-order",
             )
-        return self
 
 
 class MaterialRangeTable(StrictTable):
@@ -89,8 +89,8 @@ class MaterialTable(StrictTable):
     range: MaterialRangeTable = MaterialRangeTable()
     """Ranges of uncertain properties of the material."""
 
-    @model_validator(mode="after")
-    def _within_range(self) -> "MaterialTable":
+    @condition
+    def _within_range(self) -> None:
         ends, strength = self.range.yield_strength, self.yield_strength
         if ends is not None and (strength is None or not ends[0] <= strength <= ends[1]):
             raise ArgumentError(
@@ -98,10 +98,9 @@ class MaterialTable(StrictTable):
                 "upper end",
                 "strengths-out-of-order",
             )
-        return self
 
-    @model_validator(mode="after")
-    def _in_order(self) -> "MaterialTable":
+    @condition
+    def _in_order(self) -> None:
         ultimate = self.ultimate_strength
         for key in ("yield_strength", "shear_strength"):
             lower = getattr(self, key)
@@ -111,10 +110,9 @@ class MaterialTable(StrictTable):
                     "exceed; check both, and their units",
                     "strengths-out-of-order",
                 )
-        return self
 
-    @model_validator(mode="after")
-    def _one_strength(self) -> "MaterialTable":
+    @condition
+    def _one_strength(self) -> None:
         if self.hardened is not None and self.yield_strength is not None:
             raise ArgumentError(
                 "give either yield_strength or hardened, whose core is the yield strength of what "
@@ -126,10 +124,9 @@ class MaterialTable(StrictTable):
                 "hardening is past the yield strength of one material; a hardened surface has two",
                 "key-not-applicable",
             )
-        return self
 
-    @model_validator(mode="after")
-    def _hardens(self) -> "MaterialTable":
+    @condition
+    def _hardens(self) -> None:
         points = [(0.0, self.yield_strength or 0.0), *self.hardening]
         rising = all(a < b and s <= t for (a, s), (b, t) in pairwise(points))
         if self.hardening and (self.yield_strength is None or not rising):
@@ -138,4 +135,3 @@ class MaterialTable(StrictTable):
                 "do not decrease from it",
                 "bad-hardening",
             )
-        return self

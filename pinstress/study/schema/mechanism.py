@@ -9,7 +9,7 @@ from pinbase.errors import ArgumentError
 from pinstress.study.schema.drives import RotaryDrive, SliderDrive
 from pinstress.study.schema.forces import LineSpringTable, TorsionSpringTable
 from pinstress.study.schema.gears import GearTable, RackTable
-from pinstress.study.schema.rules import both_or_none, exactly_one, require_one
+from pinstress.study.schema.rules import both_or_none, condition, exactly_one, require_one
 from pinstress.study.schema.types import (
     NOT_NEGATIVE,
     ONE_OR_SEVERAL,
@@ -170,10 +170,9 @@ class BodyTable(StrictTable):
     welded_to: str | None = None
     """Body, or "ground", to which it is fixed. Forces in the weld are not computed."""
 
-    @model_validator(mode="after")
-    def _one_mass(self) -> "BodyTable":
+    @condition
+    def _one_mass(self) -> None:
         require_single_mass(self.mass, self.weight, self.bar, self.centre)
-        return self
 
 
 class SliderTable(StrictTable):
@@ -226,8 +225,8 @@ class SharingTable(StrictTable):
     """Piston area of each of the `parallel`, under the same pressure; only the ratios matter. Equal
     areas: equal forces."""
 
-    @model_validator(mode="after")
-    def _one_rule(self) -> "SharingTable":
+    @condition
+    def _one_rule(self) -> None:
         require_one("either connections or parallel", self.connections, self.parallel)
         if self.connections is not None and self.areas is not None:
             raise ArgumentError("areas is for parallel drives only", "key-not-applicable")
@@ -235,7 +234,6 @@ class SharingTable(StrictTable):
         names = self.connections or self.parallel or []
         if len(names) != len(self.stiffness or self.areas or []):
             raise ArgumentError("give one number for each name", "lengths-differ")
-        return self
 
 
 class PointTable(StrictTable):
@@ -279,8 +277,8 @@ class LinkStiffnessTable(StrictTable):
     rigid: Switch = False
     """Whether the link is rigid compared with the others."""
 
-    @model_validator(mode="after")
-    def _one_section(self) -> "LinkStiffnessTable":
+    @condition
+    def _one_section(self) -> None:
         given = [self.diameter, self.section, self.stiffness, self.rigid or None]
         if given.count(None) != len(given) - 1:
             raise ArgumentError(
@@ -289,7 +287,6 @@ class LinkStiffnessTable(StrictTable):
             )
         if self.bore and (self.diameter is None or self.bore >= self.diameter):
             raise ArgumentError("bore must be less than the diameter", "out-of-range")
-        return self
 
 
 class MechanismTable(StrictTable):

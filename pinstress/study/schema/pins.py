@@ -4,13 +4,13 @@ from itertools import groupby
 from math import inf
 from typing import Annotated, Literal
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from pinbase.errors import ArgumentError
 from pinbase.keys import key_part
 from pinstress.study.schema.lugs import LugTable
 from pinstress.study.schema.materials import HardenedTable
-from pinstress.study.schema.rules import exactly_one
+from pinstress.study.schema.rules import condition, exactly_one
 from pinstress.study.schema.types import (
     Angle,
     Length,
@@ -51,15 +51,14 @@ class SegmentTable(StrictTable):
     hardened: HardenedTable | None = None
     """Hardened outer surface of this segment. Default: that of the pin or its material."""
 
-    @model_validator(mode="after")
-    def _is_named_ear(self) -> "SegmentTable":
+    @condition
+    def _is_named_ear(self) -> None:
         if self.ear_of is not None and (self.name is None or self.connection is not None):
             raise ArgumentError(
                 "ear_of is for a segment with a name, by which the lug of this ear is called, and "
                 "without a connection of its own",
                 "ear-without-name",
             )
-        return self
 
     @field_validator("bore")
     @classmethod
@@ -102,14 +101,13 @@ class BottomTable(StrictTable):
     bottom_radius: NotNegativeLength = 0.0
     """Radius of the corners at the bottom; 0 is sharp, where stress is unbounded."""
 
-    @model_validator(mode="after")
-    def _has_bottom(self) -> "BottomTable":
+    @condition
+    def _has_bottom(self) -> None:
         if self.depth is None and (self.tip_angle is not None or self.bottom_radius):
             raise ArgumentError(
                 "tip_angle and bottom_radius are of a blind hole; give its depth, too",
                 "key-not-applicable",
             )
-        return self
 
 
 class HoleTable(BottomTable):
@@ -247,8 +245,8 @@ class PinTable(StrictTable):
     outer surface), "hole 1", "flat 1", "slot 1", "passage 1", or a band. Default: none; forces and
     couples must then be nearly in equilibrium, or carried by lugs."""
 
-    @model_validator(mode="after")
-    def _one_shape(self) -> "PinTable":
+    @condition
+    def _one_shape(self) -> None:
         given = [shape for shape in SHAPE_KEYS if getattr(self, shape) is not None]
         if len(given) != 1:
             raise ArgumentError(
@@ -271,7 +269,6 @@ class PinTable(StrictTable):
                     f"band {name}: with meridian give z = [a, b], since only files name surfaces",
                     "key-not-applicable",
                 )
-        return self
 
     @property
     def diameters(self) -> tuple[float, ...]:
@@ -293,12 +290,11 @@ class PinTable(StrictTable):
             (f"band.{key_part(name)}", name) for name, band in self.band.items() if band.connection
         ]
 
-    @model_validator(mode="after")
-    def _ears_alike(self) -> "PinTable":
+    @condition
+    def _ears_alike(self) -> None:
         for connection, ear in self.ears.items():
             if connection in self.lug:
                 self.lug.setdefault(ear, self.lug[connection])
-        return self
 
     @property
     def ears(self) -> dict[str, str]:

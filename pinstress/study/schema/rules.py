@@ -23,13 +23,13 @@ def require_both(what: str, one: Any, other: Any) -> None:
 
 def exactly_one(what: str, *keys: str) -> Any:
     """Return the validator of a table in which exactly one of some keys must be given."""
-    return rule(lambda table: require_one(what, *(getattr(table, key) for key in keys)))
+    return condition(lambda table: require_one(what, *(getattr(table, key) for key in keys)))
 
 
 def both_or_none(one: str, other: str) -> Any:
     """Return the validator of a table in which two keys must be given together."""
     what = f"{one} and {other}"
-    return rule(lambda table: require_both(what, getattr(table, one), getattr(table, other)))
+    return condition(lambda table: require_both(what, getattr(table, one), getattr(table, other)))
 
 
 def at_most_one(one: str, other: str) -> Any:
@@ -39,7 +39,7 @@ def at_most_one(one: str, other: str) -> Any:
         if getattr(table, one) is not None and getattr(table, other) is not None:
             raise ArgumentError(f"give {one} or {other}, not both", "give-one")
 
-    return rule(check)
+    return condition(check)
 
 
 def not_zero(*keys: str) -> Any:
@@ -51,10 +51,10 @@ def not_zero(*keys: str) -> Any:
                 text = f"{key} must not be zero; give its direction"
                 raise ArgumentError(text, "no-direction")
 
-    return rule(check)
+    return condition(check)
 
 
-def rule(check: Callable[[StrictTable], None]) -> Any:
+def condition(check: Callable[[Any], None]) -> Any:
     """Return the validator of a whole table that raises the errors of `check`."""
 
     def checked(table: StrictTable) -> StrictTable:

@@ -20,7 +20,7 @@ from pinstress.study.schema.mechanism import (
     SharingTable,
     require_single_mass,
 )
-from pinstress.study.schema.rules import both_or_none, exactly_one, not_zero, rule
+from pinstress.study.schema.rules import both_or_none, condition, exactly_one, not_zero
 from pinstress.study.schema.types import (
     ONE_OR_SEVERAL,
     Acceleration,
@@ -108,8 +108,8 @@ class SpaceJointTable(StrictTable):
             raise ArgumentError("at: in space (dimension = 3) give [x, y, z]", "wrong-dimension")
         return data
 
-    @model_validator(mode="after")
-    def _complete(self) -> "SpaceJointTable":
+    @condition
+    def _complete(self) -> None:
         if self.friction and self.fixed_in is None:
             raise ArgumentError(
                 "a floating pin cannot have friction; give fixed_in", "friction-floats"
@@ -120,7 +120,6 @@ class SpaceJointTable(StrictTable):
                 "too-few-connections",
             )
         _require_axes(self)
-        return self
 
 
 def _require_axes(joint: SpaceJointTable) -> None:
@@ -164,7 +163,7 @@ def _depth_of(what: str) -> Any:
                 "give-both",
             )
 
-    return rule(check)
+    return condition(check)
 
 
 class SpaceBarTable(BarTable):
@@ -221,15 +220,14 @@ class SpaceBodyTable(StrictTable):
             )
         return data
 
-    @model_validator(mode="after")
-    def _one_mass(self) -> "SpaceBodyTable":
+    @condition
+    def _one_mass(self) -> None:
         require_single_mass(self.mass, self.weight, self.bar, self.centre)
         if self.inertia is not None and len(self.inertia) not in (3, 6):
             raise ArgumentError(
                 "inertia: give 3 moments, [xx, yy, zz], or 6 numbers, [xx, yy, zz, xy, xz, yz]",
                 "bad-shape",
             )
-        return self
 
 
 class AngleDrive(TurningDrive):
@@ -264,11 +262,10 @@ class LengthDrive(SlidingDrive):
     bodies: tuple[str, str]
     """The two bodies; one may be "ground"."""
 
-    @model_validator(mode="after")
-    def _named(self) -> "LengthDrive":
+    @condition
+    def _named(self) -> None:
         if self.name is None:
             raise ArgumentError("a drive between two points needs a name", "missing-key")
-        return self
 
 
 SpaceDrive = AngleDrive | TravelDrive | LengthDrive

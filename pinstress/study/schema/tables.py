@@ -24,6 +24,7 @@ from pinstress.study.schema.materials import MaterialTable
 from pinstress.study.schema.mechanism import MechanismTable
 from pinstress.study.schema.pins import PinTable
 from pinstress.study.schema.require import RequireTable
+from pinstress.study.schema.rules import condition
 from pinstress.study.schema.sequence import SequenceTable
 from pinstress.study.schema.shown import as_text, in_toml
 from pinstress.study.schema.size import SizeTable
@@ -141,15 +142,14 @@ class AnalysisTable(StrictTable):
         """The chosen sets of checks, each once."""
         return (self.code,) if isinstance(self.code, str) else tuple(dict.fromkeys(self.code))
 
-    @model_validator(mode="after")
-    def _ultimate_is_more(self) -> "AnalysisTable":
+    @condition
+    def _ultimate_is_more(self) -> None:
         if self.ultimate_factor < self.limit_factor:
             raise ArgumentError(
                 f"ultimate_factor {self.ultimate_factor:g} is less than limit_factor "
                 f"{self.limit_factor:g}; ultimate loads are limit loads or more",
                 "factors-out-of-order",
             )
-        return self
 
 
 class BeamCheckTable(StrictTable):

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from pinbase.errors import ArgumentError
+from pinstress.study.schema.rules import condition
 from pinstress.study.schema.types import Coordinate, Number, StrictTable, Whole
 
 MAX_DESIGNS = 1_000_000
@@ -41,8 +42,8 @@ class ParameterTable(StrictTable):
     """Number of values in a grid: evenly spaced from `from` to `to`; for a distribution, the
     medians of as many equally likely parts."""
 
-    @model_validator(mode="after")
-    def _one_law(self) -> "ParameterTable":
+    @condition
+    def _one_law(self) -> None:
         ends = self.from_ is not None, self.to is not None
         laws = [x for x in PROBABILITY_LAWS if getattr(self, x) is not None]
         if any(ends) and not all(ends):
@@ -55,7 +56,6 @@ class ParameterTable(StrictTable):
             raise ArgumentError(
                 "within cuts off a normal or a lognormal law only", "not-applicable"
             )
-        return self
 
 
 PROBABILITY_LAWS = ("uniform", "normal", "lognormal", "triangular", "tolerance")

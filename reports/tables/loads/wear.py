@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reports.data.results import Results
-from reports.data.row import Units
 from reports.data.wear import BandWear
-from reports.tables.column import Column, Table, texts, unit_columns
+from reports.tables.column import Column, Table, fields, headed, texts, unit_columns
 
 WEAR_NOTE = (
     "Over the whole motion. The link slides on the pin, which turns with the body that carries it; "
@@ -19,25 +18,25 @@ WEAR_NOTE = (
 
 @dataclass(frozen=True)
 class WearRow:
-    """A band with the units of its numbers."""
+    """A band, with the results that have the units of its numbers."""
 
     of: BandWear
-    units: Units
+    results: Results
 
 
 COLUMNS: list[Column[WearRow]] = [
-    *texts("case=of.case pin=of.pin connection=of.connection body=of.body"),
+    *texts("of.case of.pin of.connection of.body"),
     Column("turns_with", lambda row: row.of.against, "", "pin turns with", numeric=False),
     Column("floats", lambda row: row.of.floats, "", "pin floats", numeric=False),
-    Column("mean_pressure", lambda row: row.of.mean_pressure, "stress", "mean pressure"),
-    Column("velocity", lambda row: row.of.velocity, "velocity", "velocity"),
-    Column("sliding_distance", lambda row: row.of.distance, "length", "sliding distance"),
-    Column("pressure_velocity", lambda row: row.of.pressure_velocity, "stress velocity", "p v"),
-    Column("time", lambda row: row.of.time, "time", "time"),
-    *unit_columns("length stress time"),
+    *headed("of.mean_pressure", "stress"),
+    *headed("of.velocity", "velocity"),
+    *headed("sliding_distance=of.distance", "length"),
+    *fields("of.pressure_velocity", "stress velocity", heading="p v"),
+    *headed("of.time", "time"),
+    *unit_columns("length stress time", "results"),
 ]
 
 
 def wear_table(results: Results) -> Table[WearRow]:
     """Return a line for each band of each motion."""
-    return Table("wear", COLUMNS, [WearRow(row, results.units) for row in results.wear])
+    return Table("wear", COLUMNS, [WearRow(row, results) for row in results.wear])

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from math import inf
 
 from pinbase.counted import counted
+from pinbase.rounding import without_round_off
 from reports.data.envelope import EnvelopeCell, case_names, envelope, omitted_note, paragraphs
 from reports.data.mechanics import PeakReaction
 from reports.data.results import Results
-from reports.data.row import Units
 from reports.format.numbers import DASH, beside_limit
 from reports.tables.column import Column, Table, fields, unit_columns
 
@@ -34,7 +34,6 @@ class EnvelopeRow:
 
     cell: EnvelopeCell
     load: PeakReaction | None
-    units: Units
 
 
 COLUMNS: tuple[Column[EnvelopeRow], ...] = (
@@ -44,17 +43,13 @@ COLUMNS: tuple[Column[EnvelopeRow], ...] = (
     *fields("load?.moment", "moment"),
     *fields("cell.result.max_von_mises", "stress"),
     *fields("cell.result.safety_factor utilisation_high=cell.used cell.outcome cell.governs"),
-    *unit_columns("force length stress"),
+    *unit_columns("force length stress", "cell.result"),
 )
 
 
 def envelope_table(results: Results) -> Table[EnvelopeRow]:
     """Return the largest force and moment on each connection, with the pin's results."""
-    rows = [
-        EnvelopeRow(cell, load, results.units)
-        for cell in envelope(results)
-        for load in cell.largest or (None,)
-    ]
+    rows = [EnvelopeRow(x, load) for x in envelope(results) for load in x.largest or (None,)]
     return Table("envelope", COLUMNS, rows)
 
 
@@ -82,7 +77,7 @@ class CaseRow:
     @property
     def line(self) -> str:
         """The largest utilisation in words, for a case that governs no pin."""
-        most = max(self.cells.values(), key=lambda cell: cell.used or 0.0)
+        most = max(self.cells.values(), key=lambda cell: without_round_off(cell.used or 0.0))
         return f"governs no pin; largest {cell_text(most)}, pin {most.result.pin}"
 
 
@@ -113,7 +108,7 @@ def matrix(results: Results) -> Matrix | None:
     rows = [CaseRow(case, cells, cited.get(case, "")) for case, cells in by_case.items()]
     quiet: list[CaseRow] = []
     if len(rows) > MAX_CASES_IN_SENTENCES:
-        rows.sort(key=lambda row: (row.governs, row.used), reverse=True)
+        rows.sort(key=lambda row: (row.governs, without_round_off(row.used)), reverse=True)
         quiet = [row for row in rows if not row.governs]
     pins = list(dict.fromkeys(row.pin for row in results.pins))
     return Matrix(pins, rows[: len(rows) - len(quiet)], quiet, omitted_note(results))

@@ -10,7 +10,7 @@ from typing import Any
 
 from assess.margin import Margin
 from reports.data.results import Results
-from reports.data.row import PinResult, Units
+from reports.data.row import PinResult
 from reports.format.files import markdown
 from reports.format.numbers import DASH, components, engineering, short
 from reports.format.ranges import factor_range
@@ -32,11 +32,10 @@ class CheckRow:
 
     pin: PinResult
     check: Margin | None
-    units: Units
 
 
 def _check(
-    name: str, dimension: str, heading: str, model: Callable[[CheckRow], str], **more: Any
+    name: str, dimension: str, heading: str, model: Callable[[PinResult], str], **more: Any
 ) -> Column[CheckRow]:
     """Return a column of an attribute of the check.
 
@@ -46,7 +45,7 @@ def _check(
     key, _, attribute = name.rpartition("=")
 
     def text(row: CheckRow) -> str:
-        return model(row) if row.check is None else of_check.shown(row)
+        return model(row.pin) if row.check is None else of_check.shown(row)
 
     of_check = Column[CheckRow](
         key or attribute, attrgetter(f"check.{attribute}"), dimension, heading, **more
@@ -58,16 +57,13 @@ COLUMNS: list[Column[CheckRow]] = [
     *PIN_AND_CASE,
     Column("check", lambda row: row.check and row.check.method, "", "check",
            lambda row: row.check.shown if row.check else _model(row.pin), numeric=False),
-    _check("at", "", "location", lambda row: _location(row), numeric=False),
-    _check(
-        "time", "time", "time",
-        lambda row: DASH if row.pin.time is None else short(row.pin.time), drop_if_empty=True
-    ),
-    _check("stress=demand", "stress", "stress", lambda row: engineering(row.pin.max_von_mises)),
-    _check("strength=allowable", "stress", "strength", lambda row: "yield"),
-    _check("factor=safety_factor", "", "factor", lambda row: _factor(row.pin)),
-    _check("formula", "", "stress from", lambda row: "elasticity", numeric=False),
-    _check("source=clause", "", "source", lambda row: DASH, numeric=False),
+    _check("at", "", "location", lambda pin: _location(pin), numeric=False),
+    _check("time", "time", "time", lambda pin: short(pin.time), drop_if_empty=True),
+    _check("stress=demand", "stress", "stress", lambda pin: engineering(pin.max_von_mises)),
+    _check("strength=allowable", "stress", "strength", lambda _: "yield"),
+    _check("factor=safety_factor", "", "factor", lambda pin: _factor(pin)),
+    _check("formula", "", "stress from", lambda _: "elasticity", numeric=False),
+    _check("source=clause", "", "source", lambda _: DASH, numeric=False),
     # These columns repeat the model's result for the pin, with its verdict.
     *fields("pin.model"),
     *fields("pin.max_von_mises", "stress"),
@@ -81,9 +77,7 @@ COLUMNS: list[Column[CheckRow]] = [
 
 def hand_checks_table(results: Results) -> Table[CheckRow]:
     """Return every check of every pin and case, with all digits."""
-    rows = [
-        CheckRow(pin, check, results.units) for pin in results.pins for check in pin.hand_checks
-    ]
+    rows = [CheckRow(pin, check) for pin in results.pins for check in pin.hand_checks]
     return Table("hand_checks", COLUMNS, rows)
 
 
@@ -92,17 +86,16 @@ def write_hand_checks(results: Results, directory: Path) -> None:
     checked = [pin for pin in results.pins if pin.hand_checks]
     if not checked:
         return
-    units = results.units
     parts = [f"# Hand checks: {markdown.escaped(results.title)}", HAND_CHECKS_NOTE]
     for pin in checked:
-        title, table = f"{pin.pin}, {pin.case}", pin_checks(pin, units)
-        parts += [f"## {markdown.escaped(title)}", table.grid(units).markdown()]
+        title, table = f"{pin.pin}, {pin.case}", pin_checks(pin)
+        parts += [f"## {markdown.escaped(title)}", table.grid(results.units).markdown()]
     (directory / "hand_checks.md").write_text("\n\n".join(parts) + "\n", encoding="utf-8")
 
 
-def pin_checks(pin: PinResult, units: Units) -> Table[CheckRow]:
+def pin_checks(pin: PinResult) -> Table[CheckRow]:
     """Return the model's result, then every check, for people."""
-    rows = [CheckRow(pin, check, units) for check in (None, *pin.hand_checks)]
+    rows = [CheckRow(pin, check) for check in (None, *pin.hand_checks)]
     return Table("hand_checks", COLUMNS, rows)
 
 
@@ -111,12 +104,11 @@ def _model(pin: PinResult) -> str:
     return f"{pin.model} model, maximum von Mises stress{outside}"
 
 
-def _location(row: CheckRow) -> str:
-    location = row.pin.location
-    if location is None:
+def _location(pin: PinResult) -> str:
+    if pin.location is None:
         return DASH
-    place = components(location, max(map(abs, location)))
-    return f"x, y, z = {', '.join(place)} {row.units.length}"
+    place = components(pin.location, max(map(abs, pin.location)))
+    return f"x, y, z = {', '.join(place)} {pin.units.length}"
 
 
 def _factor(pin: PinResult) -> str:

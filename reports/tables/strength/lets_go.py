@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf
 
 from reports.data.lets_go import LettingGo, PinSteps, lets_go
 from reports.data.results import Results
-from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering, short
 from reports.format.ranges import factor_text
-from reports.tables.column import Column, Table, fields, read_only
+from reports.tables.column import (
+    PIN_AND_CASE,
+    Column,
+    PinRow,
+    Table,
+    fields,
+    headed,
+    or_dash,
+    read_only,
+    texts,
+)
 
 LETS_GO_NOTE = (
     "Load factor: multiplies all loads of the case. Local yielding, at a fillet or a bore, is not "
@@ -28,17 +36,8 @@ LOAD_FACTOR_NOTE = (
 MAX_STEPS = 12  # shown at once
 
 
-@dataclass(frozen=True)
-class StepRow:
-    """A step, with the row of its pin."""
-
-    pin: PinResult
-    of: LettingGo
-
-
-def _factor(row: StepRow) -> str:
+def _factor(step: LettingGo) -> str:
     """Return the load factor with its ends."""
-    step = row.of
     if step.load_factor is None:
         return DASH
     about = "" if step.in_proportion else "≈ "
@@ -52,37 +51,28 @@ def _factor(row: StepRow) -> str:
     return f"{about}{ends}" if step.low == step.load_factor else f"{about}{factor} ({ends})"
 
 
-def _required(row: StepRow) -> str:
-    return DASH if row.of.required is None else short(row.of.required)
-
-
-COLUMNS: list[Column[StepRow]] = [
-    *fields("pin=pin.pin case=pin.case"),
-    read_only("load factor", _factor),
+COLUMNS: list[Column[PinRow[LettingGo]]] = [
+    *PIN_AND_CASE,
+    read_only("load factor", lambda row: _factor(row.of)),
     *fields("of.load_factor of.low of.high"),
-    Column("required", lambda row: row.of.required, "", "required", _required),
-    Column("what", lambda row: row.of.what, heading="what", numeric=False),
-    Column("at", lambda row: row.of.at, "", "at", lambda row: row.of.at or DASH, numeric=False,
-           drop_if_empty=True),
-    Column("effect", lambda row: row.of.effect, heading="effect", numeric=False),
-    Column("clause", lambda row: row.of.clause, "", "clause", lambda row: row.of.clause or DASH,
-           numeric=False, rank=1),
+    *headed("of.required", show=short),
+    *texts("of.what"),
+    *texts("of.at", show=or_dash, drop_if_empty=True),
+    *texts("of.effect"),
+    *texts("of.clause", show=or_dash, rank=1),
     *fields("of.in_proportion of.needs"),
-]  # fmt: skip
+]
 
 
-def lets_go_table(results: Results) -> Table[StepRow]:
+def lets_go_table(results: Results) -> Table[PinRow[LettingGo]]:
     """Return the steps of all pins for files."""
-    return Table("lets_go", COLUMNS, [row for pin in lets_go(results) for row in _rows(pin)])
+    rows = [PinRow(pin.row, step) for pin in lets_go(results) for step in pin.steps]
+    return Table("lets_go", COLUMNS, rows)
 
 
-def shown_steps(pin: PinSteps) -> Table[StepRow]:
+def shown_steps(pin: PinSteps) -> Table[PinRow[LettingGo]]:
     """Return the steps with a load factor, for people."""
-    return Table("lets_go", COLUMNS, [StepRow(pin.row, step) for step in pin.known])
-
-
-def _rows(pin: PinSteps) -> list[StepRow]:
-    return [StepRow(pin.row, step) for step in pin.steps]
+    return Table("lets_go", COLUMNS, [PinRow(pin.row, step) for step in pin.known])
 
 
 def notes(pin: PinSteps) -> list[str]:

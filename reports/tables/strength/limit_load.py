@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from assess.plastic.records import LimitLoad, LoadCurve
+from assess.plastic.records import LimitLoad
 from reports.data.results import Results
 from reports.data.row import PinResult
 from reports.format.numbers import DASH, engineering
-from reports.tables.column import ArrayTable, Column, Table, fields, json_of, read_only
+from reports.tables.column import (
+    ArrayTable,
+    Column,
+    Table,
+    digits,
+    fields,
+    headed,
+    json_of,
+    read_only,
+    texts,
+)
 
 LIMIT_LOAD_NOTE = (
     "A pin whose safety factor is below one yields somewhere, which may be acceptable. It "
@@ -20,21 +30,18 @@ LEFT_OUT_NOTE = (
     "pressures of lugs."
 )
 COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
-    Column("pin", lambda row: row[0].pin),
-    Column("case", lambda row: row[0].case),
+    *fields("0.pin 0.case"),
     Column("mesh", lambda row: len(row[1].meshes)),
-    Column("load_factor", lambda row: _curve(row[1]).factor),
-    Column("displacement", lambda row: _curve(row[1]).displacement, "length"),
-    Column("permanent_set", lambda row: _curve(row[1]).permanent, "length"),
+    *fields("load_factor=1.curve.factor"),
+    *fields("1.curve.displacement permanent_set=1.curve.permanent", "length"),
 ]
 LIMIT_COLUMNS: list[Column[tuple[PinResult, LimitLoad]]] = [
-    read_only("pin", lambda row: row[0].pin, numeric=False),
-    read_only("case", lambda row: row[0].case, numeric=False),
+    *texts("0.pin 0.case"),
     read_only("under its loads", lambda row: limit_word(*row), numeric=False),
     read_only("collapses at × loads", lambda row: limit_range(row[1])),
-    read_only("by", lambda row: row[1].method, numeric=False),
-    read_only("permanent set", lambda row: engineering(row[1].permanent_set, 3), "length", rank=1),
-    read_only("after × loads", lambda row: engineering(row[1].permanent_at, 3), rank=2),
+    *texts("by=1.method"),
+    *headed("1.permanent_set", "length", show=digits(3), rank=1),
+    *fields("1.permanent_at", heading="after × loads", show=digits(3), rank=2),
 ]
 
 LIMIT_LOAD = fields(  # keys of results.json
@@ -90,11 +97,6 @@ def limit_load_table(results: Results) -> Table[tuple[PinResult, LimitLoad]]:
     """Return the load factor against displacement on the finest mesh."""
     rows = [(pin, limit) for pin, limit in limit_rows(results) if limit.curve is not None]
     return ArrayTable("limit_load", COLUMNS, rows)
-
-
-def _curve(limit: LimitLoad) -> LoadCurve:
-    assert limit.curve is not None
-    return limit.curve
 
 
 def limit_load_json(limit: LimitLoad | None) -> dict[str, Any] | None:

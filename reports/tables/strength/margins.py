@@ -16,7 +16,7 @@ from reports.format.numbers import DASH, engineering, margin_text, short
 from reports.format.ranges import used_text
 from reports.format.units import unit_name
 from reports.format.work_words import passing_text, work_text
-from reports.tables.column import Column, Table, fields, in_order, read_only, texts
+from reports.tables.column import Column, Table, fields, headed, in_order, or_dash, read_only, texts
 
 MARGIN_COLUMN_ORDER = "pin case method margin utilisation level at time demand allowable clause"
 STRENGTH_SUFFIX = "_strength"  # end of the keys of strengths of materials
@@ -70,12 +70,11 @@ def _dimension(row: MarginRow) -> str:
 
 COLUMNS: list[Column[MarginRow]] = [
     *texts("pin"),
-    Column("case", lambda row: row.case, "", "case", lambda row: row.case or DASH, numeric=False),
+    *texts("case", show=or_dash),
     Column("method", lambda row: row.margin.method, "", "check",
            lambda row: row.margin.shown, numeric=False),
-    Column("clause", lambda row: row.margin.clause, heading="clause", numeric=False, rank=3),
-    Column("at", lambda row: row.margin.at, "", "at", lambda row: row.margin.at or DASH,
-           numeric=False, rank=2, drop_if_empty=True),
+    *texts("margin.clause", rank=3),
+    *texts("margin.at", show=or_dash, rank=2, drop_if_empty=True),
     Column("level", lambda row: row.margin.level, "", "loads",
            lambda row: f"{row.margin.level}\u00a0×\u00a0{short(row.margin.factor)}",
            numeric=False, rank=1),
@@ -83,13 +82,11 @@ COLUMNS: list[Column[MarginRow]] = [
            lambda row: row.with_unit(row.margin.demand)),
     Column("allowable", lambda row: row.margin.allowable, _dimension, "allowable",
            lambda row: row.with_unit(row.margin.allowable)),
-    Column("factor", lambda row: row.margin.factor),
-    Column("utilisation", lambda row: row.margin.utilisation, "", "utilisation",
-           lambda row: _per_cent(row.margin.utilisation)),
-    Column("margin", lambda row: row.margin.margin, "", "margin",
-           lambda row: margin_text(row.margin.margin)),
+    *fields("margin.factor"),
+    *headed("margin.utilisation", text=lambda row: _per_cent(row.margin.utilisation)),
+    *headed("margin.margin", show=margin_text),
     *fields("unit"),
-    Column("time", lambda row: row.margin.time, "time", "time", drop_if_empty=True),
+    *headed("margin.time", "time", drop_if_empty=True),
     *fields("margin.basis"),
     Column("not_made", lambda row: f"needs {row.margin.needs}" if row.margin.needs else ""),
     *fields("margin.governs margin.code"),
@@ -101,9 +98,9 @@ ARM_COLUMNS: list[Column[ArmsRow]] = [
     *texts("arms.pin arms.case"),
     *fields("arms.time", "time"),
     *texts("arms.layout"),
-    Column("moment_even", lambda row: row.arms.even, "moment", "even"),
-    Column("moment_concentrated", lambda row: row.arms.concentrated, "moment", "concentrated"),
-    Column("moment_joint", lambda row: row.arms.joint, "moment", "joint model"),
+    *fields("moment_even=arms.even", "moment", heading="even"),
+    *fields("moment_concentrated=arms.concentrated", "moment", heading="concentrated"),
+    *fields("moment_joint=arms.joint", "moment", heading="joint model"),
     *fields("joint_model=arms.model"),
     Column("moment_unit", lambda row: unit_name("moment", row.units)),
     read_only("even / model", lambda row: _over_joint(row, row.arms.even)),
@@ -135,7 +132,7 @@ def governing_table(results: Results) -> Table[MarginRow]:
 def pin_margins(results: Results, pin: PinResult) -> Table[MarginRow]:
     """Return all checks that were made for a row, the worst first, those for comparison last."""
     margins = [margin for margin in pin.worst if margin.used >= 0.0]
-    margins.sort(key=lambda margin: (not margin.governs, -margin.used))
+    margins.sort(key=lambda margin: (not margin.governs, -margin.rank))
     rows = (PinMargin(pin.pin, pin.case, margin) for margin in margins)
     return _shown(rows, results, without=("pin", "case"))
 

@@ -128,8 +128,8 @@ def _added(results: Results) -> list[Column[PinLine]]:
         return Column(
             column.key, lambda x: column.cell(FactorRow(x.row, results)),
             (lambda x: unit(FactorRow(x.row, results))) if callable(unit) else unit,
-            column.heading, text and (lambda x: text(FactorRow(x.row, results))), column.numeric,
-            max(column.rank, MAX_RANK), column.drop_if_empty,
+            column.heading, text and (lambda x: text(FactorRow(x.row, results))), column.show,
+            column.numeric, max(column.rank, MAX_RANK), column.drop_if_empty,
         )  # fmt: skip
 
     known = FACTOR_COLUMN_ORDER.split()

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 from reports.data.requirements import RequirementRow, requirement_rows
 from reports.data.results import Results
-from reports.format.numbers import DASH, short
+from reports.format.numbers import short
 from reports.format.ranges import factor_text
-from reports.tables.column import Column, Table, fields, texts
+from reports.tables.column import Column, Table, fields, headed, or_dash, texts
 
 COLUMNS: list[Column[RequirementRow]] = [
     *texts("pin"),
-    Column("case", lambda row: row.case, "", "case", lambda row: row.case or DASH, numeric=False),
+    *texts("case", show=or_dash),
     *fields("level"),
     Column("check", lambda row: row.check, "", "requirement", lambda row: row.title, numeric=False),
-    Column("required", lambda row: row.required, "", "required", lambda row: short(row.required)),
-    Column("reached", lambda row: row.reached, "", "reached",
-           lambda row: factor_text(row.reached, row.required, 4)),
+    *headed("required", show=short),
+    *headed("reached", text=lambda row: factor_text(row.reached, row.required, 4)),
     *texts("outcome"),
-    Column("needs", lambda row: row.needs, "", "needs", numeric=False, rank=1, drop_if_empty=True),
+    *texts("needs", rank=1, drop_if_empty=True),
     *fields("stated over"),
-]  # fmt: skip
+]
 
 
 def requirements_table(results: Results) -> Table[RequirementRow]:

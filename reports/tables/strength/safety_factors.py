@@ -12,7 +12,7 @@ from reports.data.decision import common_factor, limit, worst_first
 from reports.data.envelope import detailed_rows, omitted_note
 from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
-from reports.data.row import PinResult, SharingRange, Units
+from reports.data.row import PinResult, SharingRange
 from reports.format.files import markdown
 from reports.format.numbers import finite, ratio, short
 from reports.format.ranges import error_range, factor_range, utilisation_range, variation_range
@@ -27,7 +27,16 @@ from reports.format.words import (
     result_words,
     verdict_words,
 )
-from reports.tables.column import Column, Table, fields, grid_of, in_order, unit_columns
+from reports.tables.column import (
+    Column,
+    Table,
+    fields,
+    grid_of,
+    headed,
+    in_order,
+    texts,
+    unit_columns,
+)
 from reports.tables.published import published_maxima
 from reports.tables.stress.joint import lugs_word
 
@@ -48,10 +57,6 @@ class FactorRow:
     def required(self) -> float | None:
         """The factor that is required."""
         return finite(self.pin.required)
-
-    @property
-    def units(self) -> Units:
-        return self.results.units
 
     @property
     def joint(self) -> JointRange | None:
@@ -83,28 +88,22 @@ def _error(part: str) -> Column[FactorRow]:
 
 # New columns are appended at the end, so that the existing ones keep their positions.
 COLUMNS: tuple[Column[FactorRow], ...] = (
-    Column("pin", lambda row: row.pin.pin, heading="pin", numeric=False, in_json=True),
-    Column("case", lambda row: row.pin.case, heading="case", numeric=False, in_json=True),
-    Column("time", lambda row: row.pin.time, "time", "time",
-           rank=6, drop_if_empty=True, in_json=True),
-    Column("max_von_mises", lambda row: row.pin.max_von_mises, "stress", "max von Mises",
-           rank=1, in_json=True),
-    Column("error_estimate", lambda row: row.pin.error_estimate, "stress", "±",
-           lambda row: error_range(row.pin), rank=3, in_json=True),
-    Column("safety_factor", lambda row: row.pin.safety_factor, "", "safety factor",
-           lambda row: factor_range(row.pin), in_json=True),
+    *texts("pin.pin pin.case", in_json=True),
+    *headed("pin.time", "time", rank=6, drop_if_empty=True, in_json=True),
+    *fields("pin.max_von_mises", "stress", heading="max von Mises", rank=1, in_json=True),
+    *fields("pin.error_estimate", "stress", heading="±",
+            text=lambda row: error_range(row.pin), rank=3, in_json=True),
+    *headed("pin.safety_factor", text=lambda row: factor_range(row.pin), in_json=True),
     *fields("required"),
     *fields("pin.meets_required", in_json=True),
-    Column("verdict", lambda row: row.pin.verdict, "", "verdict",
-           lambda row: verdict_words(row.pin.verdict, row.pin.yields),
-           numeric=False, rank=7, in_json=True),
-    Column("model", lambda row: row.pin.model, heading="model",
-           numeric=False, rank=8, in_json=True),
+    *texts("pin.verdict", text=lambda row: verdict_words(row.pin.verdict, row.pin.yields),
+           rank=7, in_json=True),
+    *texts("pin.model", rank=8, in_json=True),
     *fields("pin.published_max_von_mises", "stress"),
     Column("ratio", lambda row: ratio(row.pin.max_von_mises, row.pin.published_max_von_mises)),
     *fields("pin.published_safety_factor"),
     *fields("pin.note", in_json=True),
-    *unit_columns("stress time"),
+    *unit_columns("stress time", "results"),
     *fields("pin.yields", in_json=True),
     *fields("max_von_mises_low=pin.max_von_mises_interval?.0", "stress"),
     *fields("max_von_mises_high=pin.max_von_mises_interval?.1", "stress"),
@@ -125,7 +124,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
            lambda row: utilisation_range(row.pin, limit(row.pin)), rank=2),
     *fields("margin_of_safety=margin"),
     _error("truncation"),
-    Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.units)
+    Column("depends_on", lambda row: depends_words(row.pin.depends_on, row.results.units)
            if row.pin.outcome == DEPENDS else None),
     Column("governs", lambda row: row.pin.places and row.pin.places.governing, "", "at",
            numeric=False, rank=5, drop_if_empty=True),
@@ -135,7 +134,7 @@ COLUMNS: tuple[Column[FactorRow], ...] = (
             drop_if_empty=True),
     *fields("pin.places?.contact?.beneath_error", "stress"),
     *fields("pin.places?.contact?.reach pin.places?.contact?.reach_required", "length"),
-    *unit_columns("length"),
+    *unit_columns("length", "results"),
 )  # fmt: skip
 
 

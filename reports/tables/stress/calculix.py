@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import attrgetter
 from typing import Any
 
 from assess.opinion.opinions import Opinion
 from reports.data.results import Results
-from reports.data.row import Units
-from reports.tables.column import Column, Table, fields, json_of, unit_columns
+from reports.data.row import PinResult
+from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, json_of, unit_columns
 
 
 def opinions_of(results: Results) -> list[Opinion]:
@@ -17,28 +18,21 @@ def opinions_of(results: Results) -> list[Opinion]:
     return [pin.second_opinion for pin in results.pins if pin.second_opinion]
 
 
-@dataclass(frozen=True)
-class OpinionRow:
-    """An opinion with the units of the results."""
-
-    of: Opinion
-    units: Units
-
-
-def _in_contact(unit: str) -> Column[OpinionRow]:
+def _in_contact(unit: str) -> Column[PinRow[Opinion]]:
     """Return a column of a unit that is empty unless the row is in contact."""
-    return Column(f"{unit}_unit", lambda row: getattr(row.units, unit) if row.of.contact else None)
+    name = attrgetter(f"pin.units.{unit}")
+    return Column(f"{unit}_unit", lambda row: name(row) if row.of.contact else None)
 
 
-COLUMNS: list[Column[OpinionRow]] = [
-    *fields("of.pin of.case"),
+COLUMNS: list[Column[PinRow[Opinion]]] = [
+    *PIN_AND_CASE,
     Column("unknowns", lambda row: row.of.unknowns or None),
     *fields("displacement_difference=of.displacement von_mises_difference=of.stress"),
     *fields("max_von_mises_same_mesh=of.ours max_von_mises_calculix=of.theirs", "stress"),
     *fields("max_von_mises=of.answer error_estimate=of.error", "stress"),
     Column("calculix_over_answer", lambda row: over_answer(row.of)),
     Column("agrees", lambda row: not row.of.complaint),
-    *fields("unit=units.stress note=of.complaint"),
+    *fields("unit=pin.units.stress note=of.complaint"),
     *fields("bending_moment=of.contact?.our_moment", "moment"),
     *fields("bending_moment_calculix=of.contact?.moment", "moment"),
     *fields("load_elsewhere=of.contact?.elsewhere mesh_change=of.contact?.stress_change"),
@@ -51,17 +45,17 @@ COLUMNS: list[Column[OpinionRow]] = [
 class LoadRow:
     """The load per length of a band between two values of z, ours and that of CalculiX."""
 
-    of: Opinion
+    pin: PinResult
     connection: str
     z_start: float
     z_end: float
     ours: float
     theirs: float
-    units: Units
 
 
 OPINION_LOAD_COLUMNS: list[Column[LoadRow]] = [
-    *fields("of.pin of.case connection"),
+    *PIN_AND_CASE,
+    *fields("connection"),
     *fields("z_start z_end", "length"),
     *fields("line_load=ours line_load_calculix=theirs", "force per length"),
     *unit_columns("length force"),
@@ -88,15 +82,15 @@ def opinion_tables(results: Results) -> list[Table[Any]]:
     """Return the table with a row for each pin and case, and the loads per length of rows in
     contact.
     """
-    opinions, units = opinions_of(results), results.units
+    rows = [PinRow(pin, pin.second_opinion) for pin in results.pins if pin.second_opinion]
     loads = [
-        LoadRow(o, band.name, *ends, ours, theirs, units)
-        for o in opinions
-        for band in (o.contact.bands if o.contact else ())
+        LoadRow(row.pin, band.name, *ends, ours, theirs)
+        for row in rows
+        for band in (row.of.contact.bands if row.of.contact else ())
         for ends, ours, theirs in zip(pairwise(band.ends), band.ours, band.theirs, strict=True)
     ]
     return [
-        Table("second_opinion", COLUMNS, [OpinionRow(o, units) for o in opinions]),
+        Table("second_opinion", COLUMNS, rows),
         Table("second_opinion_loads", OPINION_LOAD_COLUMNS, loads),
     ]
 

@@ -8,14 +8,16 @@ from typing import Any
 
 from fea.support.records import BandContact, JointRange, JointResult, LugStress, Variation
 from reports.data.results import Results
-from reports.format.numbers import DASH, engineering, short
+from reports.format.numbers import short
 from reports.format.ranges import used_text
 from reports.tables.column import (
     PIN_AND_CASE,
     Column,
     PinRow,
     Table,
+    digits,
     fields,
+    headed,
     json_of,
     texts,
     unit_columns,
@@ -62,27 +64,21 @@ def _range(row: PinRow[Variation]) -> JointRange:
     return row.pin.joint.range
 
 
+SHARE: dict[str, Any] = {"show": used_text, "drop_if_empty": True}  # options of columns
 BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
     *PIN_AND_CASE,
     *texts("connection=of.name"),
-    Column("force", lambda row: row.of.force, "force", "force"),
-    Column("contact_angle", lambda row: row.of.contact_angle, "degrees", "half contact angle",
-           lambda row: engineering(row.of.contact_angle, 3)),
-    Column("mean_pressure", lambda row: row.of.mean_pressure, "stress", "mean pressure"),
-    Column("couple", lambda row: row.of.couple, "moment", "couple on the link"),
-    Column("clearance", lambda row: row.of.clearance, "length", "clearance",
-           lambda row: short(row.of.clearance)),
-    Column("outer_diameter", lambda row: row.of.outer_diameter, "length", "outer diameter",
-           lambda row: short(row.of.outer_diameter)),
+    *headed("of.force", "force"),
+    *fields("of.contact_angle", "degrees", heading="half contact angle", show=digits(3)),
+    *headed("of.mean_pressure", "stress"),
+    *fields("of.couple", "moment", heading="couple on the link"),
+    *headed("of.clearance of.outer_diameter", "length", show=short),
     *unit_columns("length force stress"),
     Column("friction", lambda row: row.of.friction or None, "", "friction", drop_if_empty=True),
-    Column("friction_torque", lambda row: row.of.friction_torque, "moment", "torque by friction",
-           drop_if_empty=True),
-    Column("carrying_share", carrying_share, "", "carries over",
-           lambda row: _per_cent(carrying_share(row)), drop_if_empty=True),
-    Column("bearing_share", bearing_share, "", "of bearing strength",
-           lambda row: _per_cent(bearing_share(row)), drop_if_empty=True),
-]  # fmt: skip
+    *fields("of.friction_torque", "moment", heading="torque by friction", drop_if_empty=True),
+    Column("carrying_share", carrying_share, heading="carries over", **SHARE),
+    Column("bearing_share", bearing_share, heading="of bearing strength", **SHARE),
+]
 LINE_LOAD_COLUMNS: list[Column[PinRow[LoadStep]]] = [
     *PIN_AND_CASE,
     *fields("connection=of.band"),
@@ -97,7 +93,7 @@ RANGE_COLUMNS: list[Column[PinRow[Variation]]] = [
     *fields("of.max_von_mises", "stress"),
     *unit_columns("stress"),
     *fields("of.length", "length"),
-    Column("length_unit", lambda row: None if row.of.length is None else row.units.length),
+    Column("length_unit", lambda row: None if row.of.length is None else row.pin.units.length),
     Column("model", lambda row: _range(row).model),
     Column("lugs", lambda row: lugs_word(_range(row))),
     *fields("max_von_mises_low=of.interval?.0 max_von_mises_high=of.interval?.1", "stress"),
@@ -118,12 +114,12 @@ LUG_COLUMNS: list[Column[PinRow[LugStress]]] = [
     *fields("of.error_estimate", "stress", heading="±"),
     *fields("of.max_hoop_stress", "stress", heading="hoop stress"),
     *fields("of.angle", "degrees", heading="angle from the shank"),
-    *fields("of.z", "length", heading="z"),
-    *fields("of.time", "time", heading="time", drop_if_empty=True),
+    *headed("of.z", "length"),
+    *headed("of.time", "time", drop_if_empty=True),
     *fields("of.safety_factor", heading="factor of safety"),
     Column("interface", lambda row: row.of.interface or None, "", "interface", drop_if_empty=True),
     *fields("of.other_interface", "stress", heading="with the other interface", drop_if_empty=True),
-    *fields("of.interference", "length", heading="interference", drop_if_empty=True),
+    *headed("of.interference", "length", drop_if_empty=True),
     *unit_columns("length stress time"),
     *fields("of.mesh of.rings of.sampling", "stress"),
     *fields("of.material of.assumed"),
@@ -141,12 +137,11 @@ def joint_tables(results: Results) -> list[Table[Any]]:
     These are the bands, the loads per length along them, the maxima over the range of the joint,
     and the stress of lugs.
     """
-    units = results.units
     joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
-    bands = [PinRow(pin, units, band) for pin, joint in joints for band in joint.bands]
-    steps = [PinRow(row.pin, units, step) for row in bands for step in _steps(row.of)]
+    bands = [PinRow(pin, band) for pin, joint in joints for band in joint.bands]
+    steps = [PinRow(row.pin, step) for row in bands for step in _steps(row.of)]
     ranges = [(pin, joint.range) for pin, joint in joints if joint.range]
-    variations = [PinRow(pin, units, v) for pin, over in ranges for v in over.variations]
+    variations = [PinRow(pin, v) for pin, over in ranges for v in over.variations]
     return [
         Table("joint_bands", BAND_COLUMNS, bands),
         Table("line_loads", LINE_LOAD_COLUMNS, steps),
@@ -158,7 +153,7 @@ def joint_tables(results: Results) -> list[Table[Any]]:
 def lugs_table(results: Results) -> Table[PinRow[LugStress]]:
     """Return the stress of the lugs whose shank is known."""
     joints = [(pin, pin.joint) for pin in results.pins if pin.joint is not None]
-    rows = [PinRow(pin, results.units, lug) for pin, joint in joints for lug in joint.lugs]
+    rows = [PinRow(pin, lug) for pin, joint in joints for lug in joint.lugs]
     return Table("lugs", LUG_COLUMNS, rows)
 
 
@@ -167,10 +162,6 @@ def _steps(band: BandContact) -> Iterator[LoadStep]:
     rings = zip(band.line_load, band.ends[:-1] or none, band.ends[1:] or none, strict=True)
     for (z, load), start, end in rings:
         yield LoadStep(band.name, z, load, start, end)
-
-
-def _per_cent(share: float | None) -> str:
-    return DASH if share is None else used_text(share)
 
 
 def joint_json(joint: JointResult | None) -> dict[str, Any] | None:

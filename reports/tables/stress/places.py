@@ -8,7 +8,7 @@ from typing import Any, Literal
 from fea.core.places import ContactEdge, ContactPlace, PartPlace, SectionPlace, SurfacePlace
 from pinbase.records import plain
 from reports.data.results import Results
-from reports.data.row import PinResult, Units
+from reports.data.row import PinResult
 from reports.format.numbers import finite
 from reports.tables.column import PIN_AND_CASE, Column, PinRow, Table, fields, unit_columns
 
@@ -63,7 +63,6 @@ class PlaceRow:
     pin: PinResult
     place: PlaceName
     of: SurfacePlace | SectionPlace | ContactPlace | PartPlace
-    units: Units
 
     @property
     def stress(self) -> float:
@@ -99,7 +98,7 @@ class PlaceRow:
         return places is not None and places.governs == self.place
 
 
-def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
+def place_rows(pin: PinResult) -> list[PlaceRow]:
     """Return the places that a row has: surface, section, field beneath contact, hardened parts."""
     if pin.places is None:
         return []
@@ -108,7 +107,7 @@ def place_rows(pin: PinResult, units: Units) -> list[PlaceRow]:
         ("surface", places.surface), ("section", places.section), ("beneath", places.contact),
         *((part.part, part) for part in places.hardened),
     ]  # fmt: skip
-    return [PlaceRow(pin, name, of, units) for name, of in rows if of is not None]
+    return [PlaceRow(pin, name, of) for name, of in rows if of is not None]
 
 
 def _optional_number(key: str, dimension: str = "") -> Column[PlaceRow]:
@@ -141,10 +140,9 @@ EDGE_COLUMNS: list[Column[PinRow[ContactEdge]]] = [
 
 def place_tables(results: Results) -> list[Table[Any]]:
     """Return the places of all rows, and the edges of lugs."""
-    units = results.units
-    places = [row for pin in results.pins for row in place_rows(pin, units)]
+    places = [row for pin in results.pins for row in place_rows(pin)]
     contacts = [(p, p.places.contact) for p in results.pins if p.places and p.places.contact]
-    edges = [PinRow(pin, units, edge) for pin, contact in contacts for edge in contact.edges]
+    edges = [PinRow(pin, edge) for pin, contact in contacts for edge in contact.edges]
     return [
         Table("places", PLACE_COLUMNS, places),
         Table("contact_edges", EDGE_COLUMNS, edges),

@@ -8,9 +8,20 @@ from math import hypot
 
 from fea.core.peak import SingularZone
 from reports.data.results import Results
-from reports.data.row import PinResult, Units
-from reports.format.numbers import DASH, engineering
-from reports.tables.column import PIN_AND_CASE, Column, Table, fields, in_order, texts, unit_columns
+from reports.data.row import PinResult
+from reports.format.numbers import engineering
+from reports.tables.column import (
+    PIN_AND_CASE,
+    Column,
+    PinRow,
+    Table,
+    fields,
+    headed,
+    in_order,
+    or_dash,
+    texts,
+    unit_columns,
+)
 
 
 @dataclass(frozen=True)
@@ -74,58 +85,43 @@ def _circle(zone: SingularZone) -> tuple[str, tuple[str, str], str, str]:
     return zone.kind, zone.between, engineering(z, 5), engineering(hypot(x, y), 5)
 
 
-@dataclass(frozen=True)
-class ZoneRow:
-    """A zone of a pin in a case, with the units of the results."""
-
-    pin: PinResult
-    zone: ShownZone
-    units: Units
-
-
-COLUMNS: list[Column[ZoneRow]] = [
+COLUMNS: list[Column[PinRow[ShownZone]]] = [
     *PIN_AND_CASE,
-    Column("zone", lambda row: row.zone.number, "", "zone", lambda row: str(row.zone.number)),
-    *fields("z=zone.place.location.2", "length", heading="z"),
-    Column("radius", lambda row: row.zone.r, "length", "radius"),
-    *fields("x=zone.place.location.0 y=zone.place.location.1", "length"),
-    Column("between", lambda row: row.zone.between, "", "between",
-           lambda row: row.zone.between or DASH, numeric=False),
-    *texts("zone.place.kind"),
-    Column("exponent", lambda row: row.zone.place.exponent, "", "exponent",
-           lambda row: row.zone.exponents),
-    *fields("zone.place.exponent_theory"),
-    Column("excluded_radius", lambda row: row.zone.place.excluded, "length", "excluded distance"),
-    *texts("zone.place.governs"),
-    Column("max_von_mises", lambda row: row.zone.place.max_von_mises, "stress", "maximum inside"),
-    Column("advice", lambda row: row.zone.place.advice, heading="remedy", numeric=False),
+    *headed("zone=of.number", show=str),
+    *headed("z=of.place.location.2", "length"),
+    *headed("radius=of.r", "length"),
+    *fields("x=of.place.location.0 y=of.place.location.1", "length"),
+    *texts("of.between", show=or_dash),
+    *texts("of.place.kind"),
+    *headed("of.place.exponent", text=lambda row: row.of.exponents),
+    *fields("of.place.exponent_theory"),
+    *fields("excluded_radius=of.place.excluded", "length", heading="excluded distance"),
+    *texts("of.place.governs"),
+    *fields("of.place.max_von_mises", "stress", heading="maximum inside"),
+    *fields("of.place.advice", heading="remedy", numeric=False),
     *fields("pin.verdict"),
     *unit_columns("length stress"),
-    *fields("strength=zone.place.strength?.along", "stress"),
-    *fields("strength_exponent=zone.place.strength?.exponent"),
-    *fields("notch_stress_intensity=zone.place.strength?.notch"),
-]  # fmt: skip
+    *fields("strength=of.place.strength?.along", "stress"),
+    *fields("strength_exponent=of.place.strength?.exponent"),
+    *fields("notch_stress_intensity=of.place.strength?.notch"),
+]
 ZONE_COLUMN_ORDER = (
     "zone z radius between kind exponent excluded_radius max_von_mises strength governs advice"
 )
 
 
-def zones_table(results: Results) -> Table[ZoneRow]:
+def zones_table(results: Results) -> Table[PinRow[ShownZone]]:
     """Return every zone of every pin and case."""
     numbered = {pin: pin_zones(results, pin) for pin in dict.fromkeys(p.pin for p in results.pins)}
-    rows = [
-        ZoneRow(pin, zone, results.units)
-        for pin in results.pins
-        for zone in numbered[pin.pin][pin.case]
-    ]
+    rows = [PinRow(pin, zone) for pin in results.pins for zone in numbered[pin.pin][pin.case]]
     return Table("singular_zones", COLUMNS, rows)
 
 
-def shown_zones(pin: PinResult, zones: list[ShownZone], units: Units) -> Table[ZoneRow]:
+def shown_zones(pin: PinResult, zones: list[ShownZone]) -> Table[PinRow[ShownZone]]:
     """Return the zones of a pin in a case, for people."""
-    heading = f"strength [{units.stress} {units.length}^exponent]"
+    heading = f"strength [{pin.units.stress} {pin.units.length}^exponent]"
     columns = [
         replace(c, heading=heading, dimension="") if c.key == "strength" else c for c in COLUMNS
     ]
-    rows = [ZoneRow(pin, zone, units) for zone in sorted(zones, key=lambda zone: zone.number)]
+    rows = [PinRow(pin, zone) for zone in sorted(zones, key=lambda zone: zone.number)]
     return Table("singular_zones", in_order(columns, ZONE_COLUMN_ORDER), rows)

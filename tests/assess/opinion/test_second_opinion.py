@@ -102,7 +102,7 @@ def test_another_program_agrees_on_a_pin_that_nothing_holds(steel: Material) -> 
 def test_what_no_longer_is_a_body_of_revolution_is_read_on_its_surface(steel: Material) -> None:
     """Of a pin with a flat no section tells which nodes inside lie in a singular place."""
     plain = Pin("P", (Segment(0.01, 0.02, connection="P1"),))
-    pin = CutPin(plain, (), (Flat(0.004, 0.01, 0.008),))
+    pin = CutPin(plain, (Flat(0.004, 0.01, 0.008),))
     solution = solid_solution(MeshProblem(pin, steel, ("start",), (UP,)), MeshSize(2.0))
     surface = set(solution.fields.surface.nodes.tolist())
     read = set(compared_nodes(solution).tolist())

@@ -183,15 +183,15 @@ def test_where_no_local_solid_will_do() -> None:
         "hole-at-end": (CutPin(SHAFT, (Hole(0.021, d),)), (), bands),
         "hole-in-clamped": (hole, ("middle",), ()),
         "hole-loaded": (hole, (), ("hole 1",)),
-        "flat-at-end": (CutPin(SHAFT, (), (Flat(0.025, 0.06, 0.008),)), (), bands),
-        "flat-in-loaded": (CutPin(SHAFT, (), (Flat(0.05, 0.06, 0.008),)), (), ("middle",)),
+        "flat-at-end": (CutPin(SHAFT, (Flat(0.025, 0.06, 0.008),)), (), bands),
+        "flat-in-loaded": (CutPin(SHAFT, (Flat(0.05, 0.06, 0.008),)), (), ("middle",)),
         "passage-under-bands": (
-            CutPin(SHAFT, (Hole(0.025, d), Hole(0.135, d)), passages=(Passage(0, 0.14, d, 0.0),)),
+            CutPin(SHAFT, (Hole(0.025, d), Hole(0.135, d), Passage(0, 0.14, d, 0.0))),
             (),
             bands,
         ),
-        "flat-loaded": (CutPin(SHAFT, (), (Flat(0.05, 0.06, 0.008),)), ("flat 1",), bands),
-        "passage-in-clamped": (CutPin(SHAFT, passages=(Passage(0, 0.05, d, d),)), ("start",), ()),
+        "flat-loaded": (CutPin(SHAFT, (Flat(0.05, 0.06, 0.008),)), ("flat 1",), bands),
+        "passage-in-clamped": (CutPin(SHAFT, (Passage(0, 0.05, d, d),)), ("start",), ()),
     }
     for code, (pin, clamps, loaded) in cases.items():
         note = refusal(pin, clamps, loaded)

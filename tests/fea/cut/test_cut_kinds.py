@@ -34,7 +34,7 @@ HOLE = Hole(MIDDLE, 0.004)
 
 
 def cut(*cuts: Cut, pin: Pin = SHAFT) -> CutPin:
-    return CutPin.of(pin, cuts)
+    return CutPin(pin, cuts)
 
 
 def piece(*cuts: Cut) -> Piece:

@@ -148,7 +148,7 @@ def test_what_cuts_lose_comes_back_to_round_off(name: str, shears: bool) -> None
     """Forces and couples on the cut, of a pressure on the side that is cut away, and on the band:
     none is left over, and none acts on the floor of the cut.
     """
-    pin = CutPin.of(three(0.03), [IN_BAND[name]])
+    pin = CutPin(three(0.03), [IN_BAND[name]])
     bands = loaded_bands(pin, ("A", "B", "C"))
     assert np.array(bands) == pytest.approx(np.array([[0.03, 0.06]]))
     (piece,) = pieces(pin, (), bands=bands)
@@ -178,7 +178,7 @@ def test_a_cut_in_a_loaded_band_beside_the_whole_solid(name: str) -> None:
     """Whose pressure acts on what is left of the band, with the force of the link."""
     forces = 10e3 * np.array([[[1.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [1.0, 0.0, 0.0]]])
     loads = PinLoads("pressed", ("A", "B", "C"), forces, distribution="cosine")
-    pin = CutPin.of(three(0.03), [IN_BAND[name]])
+    pin = CutPin(three(0.03), [IN_BAND[name]])
     local, solid = (
         solve_pin(pin, STEEL, (), (loads,), requirement)[0].peak
         for requirement in (Requirement(0.02), Requirement(0.1, "solid", meshes=2))

@@ -42,7 +42,7 @@ def end_face(cut: Cut, model: Literal["auto", "solid"]) -> tuple[StressField, Fl
     (P,) there, Pa.
     """
     need = Requirement(0.2, model=model, meshes=1)
-    (found,) = solve_pin(CutPin.of(PROFILE, [cut]), STEEL, (), (LOADS,), need)
+    (found,) = solve_pin(CutPin(PROFILE, [cut]), STEEL, (), (LOADS,), need)
     assert found.answer is not None
     picture = found.answer.picture(LOADS, 0)
     assert picture is not None

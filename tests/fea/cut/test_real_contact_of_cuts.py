@@ -65,7 +65,7 @@ class Half:
 
 def half_of(cut: Cut, problem: ContactProblem) -> Half:
     """With a cut."""
-    cuts = CutPin.of(CLEVIS, (cut,)).cuts
+    cuts = CutPin(CLEVIS, (cut,)).cuts
     piece = Piece(CLEVIS, 0.0, CLEVIS.length, 0.0, cuts, ("y",), (False, False))
     space = Discretisation(piece_mesh(piece, 1.0).mesh)
     boundary = surface(space)
@@ -222,9 +222,7 @@ def real_and_ours(
     uncut = bending(problem, problem.solve(LOADS.forces[0, :, :2]))
     assert bending(problem, found) / uncut == pytest.approx(moment, abs=0.02)
     requirement = Requirement(0.05, distance=EDGE / D)
-    (ours,) = solve_in_lugs(
-        PinProblem(CutPin.of(CLEVIS, (cut,)), STEEL, LUGS, (LOADS,)), requirement
-    )
+    (ours,) = solve_in_lugs(PinProblem(CutPin(CLEVIS, (cut,)), STEEL, LUGS, (LOADS,)), requirement)
     assert ours.joint is not None
     assert ours.joint.bending_moment is not None
     assert ours.joint.bending_moment / uncut == pytest.approx(moment, abs=0.035)

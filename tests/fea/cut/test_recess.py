@@ -48,7 +48,7 @@ def test_one_in_a_loaded_end_face_is_refused() -> None:
 
 
 def test_one_that_opens_under_a_clamp_is_refused() -> None:
-    pin = as_recesses(CutPin.of(cut(BLIND).profile, [replace(BLIND, z=MIDDLE)]))
+    pin = as_recesses(CutPin(cut(BLIND).profile, [replace(BLIND, z=MIDDLE)]))
     band = next(b.name for b in pin.profile.bands if b.z0 < MIDDLE < b.z1)
     reason = refusal(pin, (band,), ())
     assert reason is not None

@@ -96,7 +96,7 @@ def test_forces_on_a_cut_band_act_at_its_middle(steel: Material) -> None:
     exactly the force, and its moment about the origin.
     """
     bar = Pin("P", (Segment(0.02, 0.02), Segment(0.02, 0.02, connection="B")))
-    pin = CutPin(bar, (), (Flat(0.025, 0.045, 0.007, 0.4),))
+    pin = CutPin(bar, (Flat(0.025, 0.045, 0.007, 0.4),))
     case = PinLoads("case", ("B",), np.array([[[30.0, 40.0, 50.0]]]), np.array([0.0, 0.0, 2.0]),
                     distribution="cosine")  # fmt: skip
     model = SolidModel(pin, solid_mesh(pin, MeshSize(across=3.0)), steel, ("start",))
@@ -145,7 +145,7 @@ def test_a_body_that_nothing_holds_closes_its_balance(steel: Material, tmp_path:
     no value.
     """
     bar = Pin("P", tuple(Segment(0.02, 0.02, connection=c) for c in "ABC"))
-    pin = CutPin(bar, (), (Flat(0.025, 0.035, 0.004, math.pi / 2),))
+    pin = CutPin(bar, (Flat(0.025, 0.035, 0.004, math.pi / 2),))
     solid = solid_mesh(pin, MeshSize(across=2.5, corner=1.0), (0.02, 0.04))
     solid.mesh.doflocs[2] -= 0.1
     path = write_mesh(solid, tmp_path / "bar.vtk")

@@ -147,7 +147,7 @@ def test_no_beam_where_a_corner_has_no_maximum(steel: Material) -> None:
 
 @pytest.mark.parametrize("model", ["beam", "harmonic"])
 def test_only_the_solid_takes_what_is_no_body_of_revolution(model: str, steel: Material) -> None:
-    cut = CutPin(BAR, (Hole(0.02, 0.004),), ())
+    cut = CutPin(BAR, (Hole(0.02, 0.004),))
     with raises(ArgumentError, "not-axisymmetric", "pin D", model):
         solve_pin(cut, steel, (), (BALANCED,), Requirement(model=model))  # type: ignore[arg-type]
 

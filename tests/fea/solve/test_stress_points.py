@@ -67,7 +67,7 @@ def test_a_shouldered_pin(cantilever_pin: Pin, steel: Material, model: Model, be
 
 def test_a_pin_with_a_flat(steel: Material) -> None:
     shaft = Pin("P", (Segment(0.05, D), Segment(0.01, D, connection="P1")))
-    pin = CutPin(shaft, (), (Flat(0.02, 0.03, 0.007, 0.0, 0.002),))
+    pin = CutPin(shaft, (Flat(0.02, 0.03, 0.007, 0.0, 0.002),))
     (found,) = solve_pin(pin, steel, ("start",), (LOADS,), Requirement(meshes=1))
     assert found.peak.model == "harmonic+local"
     assert found.answer is not None

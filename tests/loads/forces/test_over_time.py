@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -23,8 +24,8 @@ from loads import (
     motion_reactions,
     move,
     over_time,
-    peak_forces,
 )
+from loads.forces.over_time import Exerted, ForceHistory, PeakForces
 from loads.forces.reactions import Reactions, given_reactions
 from loads.linkage.drives import Law
 from pinbase.arrays import Floats
@@ -153,6 +154,14 @@ def reactions(times: Floats, *forces: Floats) -> Reactions:
     all_forces = np.stack(forces, axis=1)
     turn = np.zeros(all_forces.shape[:2])
     return replace(one, times=times, forces=all_forces, moments=0.0 * all_forces, turn=turn)
+
+
+def peak_forces(samples: Floats, at: Callable[[Floats], Reactions]) -> PeakForces:
+    def exerted(times: Floats) -> Exerted:
+        return Exerted(times, at(times), *np.zeros((2, len(times), 0)))
+
+    history = ForceHistory.of([exerted(samples)], exerted, np.empty(0), (1.0, 0.0), moments=True)
+    return history.peaks()
 
 
 def test_a_known_maximum_between_samples() -> None:

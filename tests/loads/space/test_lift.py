@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from loads import Dynamics, LinkageError, Slider, StateDrive, Turn
-from loads.forces.corners import Kinks
+from loads.forces.corners import Varying
 from loads.space.acting import SpaceLoad, SpacePush
 from loads.space.dynamics import SpaceDynamics, space_reactions
 from loads.space.motion import SpaceMotion, space_move
@@ -47,7 +47,7 @@ class _Known:
 
     name: str
     force: Floats
-    kinks: tuple[Kinks[SpaceMotion], ...] = ()
+    kinks: tuple[Varying[SpaceMotion], ...] = ()
     switches: tuple[float, ...] = ()
 
     def pushes(self, motion: SpaceMotion) -> Iterator[SpacePush]:

@@ -80,7 +80,7 @@ def test_what_is_written_is_the_same_pin(
 def test_holes_and_flats_are_written(
     change: Change, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pin = CutPin(PROFILES["stepped"], (Hole(40.0, 4.0, 0.5),), (Flat(45.0, 55.0, 8.0, 0.5),))
+    pin = CutPin(PROFILES["stepped"], (Hole(40.0, 4.0, 0.5), Flat(45.0, 55.0, 8.0, 0.5)))
     file = step(pin, tmp_path / "pin.step", change).path
     out = tmp_path / "study.toml"
     text = imported(file, capsys, "--pin", "C", "--unit", "mm", "--material", "steel")
@@ -88,8 +88,8 @@ def test_holes_and_flats_are_written(
     found = pin_of(load_study(out), "C")
     assert isinstance(found, CutPin)
     assert found.volume == pytest.approx(pin.volume * 1e-9, rel=1e-5)
-    assert found.holes[0].diameter == pytest.approx(0.004)
-    gap = (found.flats[0].angle - found.holes[0].angle) % math.pi
+    assert found.cuts["hole 1"].size == pytest.approx(0.004)
+    gap = (found.cuts["flat 1"].angle - found.cuts["hole 1"].angle) % math.pi
     assert min(gap, math.pi - gap) == pytest.approx(0.0, abs=1e-6)
     assert "segment 2: diameter 20 mm, straight from z = 24 to 60 mm" in text
 
@@ -174,7 +174,7 @@ def test_a_run_takes_a_lying_body_in_its_own_axes(tmp_path: Path) -> None:
     assert isinstance(found, CutPin)
     assert found.profile.volume == pytest.approx(drilled.profile.volume * 1e-9, rel=1e-9)
     assert (found.band("B").z0, found.band("B").z1) == pytest.approx((0.045, 0.06))
-    assert found.holes[0].angle == pytest.approx(0.4)
+    assert found.cuts["hole 1"].angle == pytest.approx(0.4)
     assert "z is along (1, 0, 0) of the file, and x along (0, 1, 0)" in shape_notes(found)
     (tmp_path / "study.toml").write_text(HEAD + USED.replace("[45, 60]", "[17, 37]"))
     own = "z of bands counts from the file's origin"

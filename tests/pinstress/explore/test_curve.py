@@ -190,6 +190,7 @@ def test_the_command_writes_table_and_picture_and_says_where_the_factor_is_reach
     with (out / "curve.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [float(row["value"]) for row in rows] == [-20000.0, -11000.0, -2000.0]
+    assert {(row["value_unit"], row["stress_unit"]) for row in rows} == {("lbf", "psi")}
     factors = [float(row["safety_factor"]) for row in rows]
     assert factors[0] * 20000.0 == pytest.approx(factors[2] * 2000.0, rel=1e-6)
     assert {path.name for path in out.iterdir()} >= {"curve.csv", "curve.svg", "curve.png"}

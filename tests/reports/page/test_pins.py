@@ -342,10 +342,10 @@ def test_a_lug_carries_over_the_rings_that_push_with_its_force() -> None:
     results = in_lugs(make_results(), make_joint())
     row = results.pins[0]
     assert row.joint is not None
-    shares = [carrying_share(PinRow(row, UNITS, band)) for band in row.joint.bands]
+    shares = [carrying_share(PinRow(row, band)) for band in row.joint.bands]
     assert shares == [0.5, 1.0, 1.0]  # the left lug holds back on its second ring
     bare = replace(row.joint.bands[0], ends=())
-    assert carrying_share(PinRow(row, UNITS, bare)) is None
+    assert carrying_share(PinRow(row, bare)) is None
 
 
 def test_conventions_are_said_where_they_are_needed() -> None:

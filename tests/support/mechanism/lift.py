@@ -15,7 +15,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from loads.forces.acting import Applied, Load, Spring, Varying
+from loads.forces.acting import Applied, Load, Spring
+from loads.forces.corners import Varying
 from loads.forces.measures import Clock, Distance, Position
 from loads.linkage.gears import side_weight
 from loads.linkage.linkage import Linkage, LinkageError

@@ -17,4 +17,4 @@ def as_recesses(pin: CutPin) -> CutPin:
         recesses: list[Recess] = [
             one.recess.scaled(MM) for one in removed_solids(gmsh, body, drawn.profile)
         ]
-    return CutPin.of(pin.profile, recesses)
+    return CutPin(pin.profile, recesses)

@@ -133,7 +133,7 @@ def test_a_keyway_that_faces_the_load_moves_its_pressure() -> None:
     assert plain.joint.bending_moment is not None
     for angle in (0.0, np.pi):
         key = Slot(0.023 - long / 2, 0.023 + long / 2, wide, 0.0025, angle, 0.0008, False)
-        pin = CutPin(CLEVIS, slots=(key,))
+        pin = CutPin(CLEVIS, (key,))
         (found,) = solve_in_lugs(PinProblem(pin, STEEL, LUGS, (loads,)), ONCE)
         peak = found.peak
         assert found.joint is not None

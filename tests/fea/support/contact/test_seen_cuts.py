@@ -44,7 +44,7 @@ def pull(*angles: float) -> PinLoads:
 def model(lugs: tuple[Lug, ...], *cuts: Cut) -> ContactModel:
     """The clevis with some cuts."""
     plain = ContactModel(CLEVIS, STEEL, lugs, ROUGH, MEMO)
-    return plain.seeing(CutPin.of(CLEVIS, cuts)) if cuts else plain
+    return plain.seeing(CutPin(CLEVIS, cuts)) if cuts else plain
 
 
 def cells(of: ContactModel, state: ContactState) -> tuple[Floats, Floats]:
@@ -135,7 +135,7 @@ def test_few_combinations_of_pressures_reach_a_cut(monkeypatch: pytest.MonkeyPat
     known = model(LOOSE, FLAT)
     monkeypatch.setattr(compliance, "STRESS_TOLERANCE", 0.0)
     monkeypatch.setattr(compliance, "WORK_TOLERANCE", 1e-6)
-    alone = ContactModel(CLEVIS, STEEL, LOOSE, ROUGH, Memo()).seeing(CutPin.of(CLEVIS, [FLAT]))
+    alone = ContactModel(CLEVIS, STEEL, LOOSE, ROUGH, Memo()).seeing(CutPin(CLEVIS, [FLAT]))
     few, every = (
         x.cuts.added(x.bands, ROUGH.sectors, np.eye(len(x.rings)))
         for x in (known, alone)

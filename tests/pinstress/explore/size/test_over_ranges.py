@@ -42,6 +42,22 @@ def test_the_factor_is_reached_with_the_least_strength(
     assert 20.0 <= low <= 20.0 * (1.0 + FACTOR_TOLERANCE)
 
 
+def test_many_steps_of_diameters_are_taken_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each full solution tried the next step only, and six were not enough."""
+    monkeypatch.chdir(tmp_path)
+    Path("study.toml").write_text(QUICK.replace(GIVEN, RANGED))
+    command = ["size", "study.toml", "--fos", "20", "--over-ranges", "--step"]
+    assert run_command_line([*command, "0.02 in"]) == 0
+    sized = load_study("study_sized.toml")
+    (row,) = run(sized).pins
+    assert row.outcome == SAFE
+    (least,) = run(changed_study(sized, LOW)).pins
+    step = 0.02 * 3.0 / 1.0  # the factor grows with the cube of a diameter of more than 1 in
+    assert 20.0 <= (low_factor(least) or 0.0) <= 20.0 * (1.0 + step)
+
+
 @pytest.mark.slow
 def test_a_loose_joint_is_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A run of the new study finds the pin of the clevis safe in every joint, and hardly more."""

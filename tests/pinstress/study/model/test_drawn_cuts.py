@@ -15,10 +15,13 @@ from tests.support.results.made_up_run import make_results
 MM = 1e-3
 PIN = CutPin(
     Pin("P", (Segment(40 * MM, 20 * MM, connection="A"),)),
-    (Hole(8 * MM, 4 * MM, 0.0, 6 * MM), Hole(16 * MM, 4 * MM, math.pi / 2)),
-    (Flat(20 * MM, 24 * MM, 9 * MM, math.pi),),
-    (Slot(30 * MM, 50 * MM, 4 * MM, 3 * MM),),
-    (Passage(0.0, 5 * MM, 2 * MM, 6 * MM, -math.pi / 2, "start"),),
+    (
+        Hole(8 * MM, 4 * MM, 0.0, 6 * MM),
+        Hole(16 * MM, 4 * MM, math.pi / 2),
+        Flat(20 * MM, 24 * MM, 9 * MM, math.pi),
+        Slot(30 * MM, 50 * MM, 4 * MM, 3 * MM),
+        Passage(0.0, 5 * MM, 2 * MM, 6 * MM, -math.pi / 2, "start"),
+    ),
 )
 
 

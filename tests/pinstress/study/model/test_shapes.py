@@ -73,8 +73,8 @@ def test_holes_and_flats_are_read(tmp_path: Path) -> None:
     found = pin_of(study, "P")
     assert isinstance(found, CutPin)
     assert not found.revolved
-    assert found.holes == (Hole(0.045, 0.004, math.pi / 2),)
-    assert found.flats == (Flat(0.05, 0.06, 0.008, 30.0 * math.pi / 180.0),)
+    assert found.cuts["hole 1"] == Hole(0.045, 0.004, math.pi / 2)
+    assert found.cuts["flat 1"] == Flat(0.05, 0.06, 0.008, 30.0 * math.pi / 180.0)
     assert "2 segments, 1 hole, 1 flat, " in describe(study)[0]
     turned = pin_of(load_study(write(tmp_path, PROFILE)), "P")
     assert isinstance(turned, Pin)
