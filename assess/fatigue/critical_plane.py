@@ -35,7 +35,6 @@ from pinbase.arrays import Floats
 # Parameters of the search; `python -m benchmarks planes` compares it with a grid of 2 degrees.
 PLANE_STEP = 9.0  # degrees between planes of the grid
 DIRECTION_STEP = 15.0  # degrees between directions in a plane
-NEIGHBOUR_ANGLE = 1.5 * PLANE_STEP  # degrees; a maximum exceeds all planes within this angle
 STARTS_PER_RANKING = 8  # grid maxima from which the search starts, for each ranking
 STEP_HALVINGS = 6  # from half of PLANE_STEP to below 0.1 degrees
 FINAL_PLANES = 3  # planes whose cycles are counted one by one
@@ -102,18 +101,15 @@ def _starts(grid: Floats, on_grid: OnPlanes) -> list[int]:
     """Return the numbers of the grid maxima from which the search starts, the largest by each
     ranking.
 
-    Of several equal maxima only one is taken: under uniaxial tension all planes around its axis are
-    equal.
+    These are maxima over the directions of a plane: near a plane with a larger one, another
+    direction may lead to the largest of all. Of several equal maxima only one is taken: under
+    uniaxial tension all planes around its axis are equal.
     """
-    normals = grid[:, 0, 0]
-    near = np.abs(normals @ normals.T) > np.cos(np.radians(NEIGHBOUR_ANGLE))
     chosen: dict[int, None] = {}
     for rank in (on_grid.damage, on_grid.softer, on_grid.largest):
         value = rank.reshape(grid.shape[:2])
-        best = value.max(axis=1)
-        top = best >= np.where(near, best, 0.0).max(axis=1)
         both = np.maximum(np.roll(value, 1, axis=1), np.roll(value, -1, axis=1))
-        maxima = np.flatnonzero(top[:, None] & (value >= both))
+        maxima = np.flatnonzero(value >= both)
         _, first = np.unique([f"{x:.3e}" for x in rank[maxima]], return_index=True)
         maxima = maxima[first]
         order = maxima[np.argsort(-rank[maxima], kind="stable")][:STARTS_PER_RANKING]

@@ -11,6 +11,7 @@ from assess.fatigue.critical_plane import findley_k, worst_plane
 from assess.fatigue.critical_points import signed_von_mises
 from assess.fatigue.fkm import FkmMaterial, _parameters, _repetitions, p_ram_life
 from assess.fatigue.flight import Flight, case_by_case, flight, rainflow, turning_points
+from assess.fatigue.many_planes import on_planes
 from assess.fatigue.records import CaseHistory, PointFatigue, PointHistory
 from assess.fatigue.sn_curve import SOFTENED_KNEE_RATIO, MeanStress, SnCurve
 from pinbase.arrays import Floats
@@ -249,6 +250,21 @@ def test_alternating_torsion_has_its_whole_range_on_the_critical_plane() -> None
     worst = worst_plane([shear], Flight((0,), 1), k, SnCurve((50.0, 1e6), 5.0).life())
     expected = 2.0 * 100.0 * np.hypot(1.0, k) / (k + np.hypot(1.0, k))
     assert worst.equivalent.max() == pytest.approx(expected, rel=5e-3)
+
+
+def test_the_search_finds_what_a_fine_grid_finds() -> None:
+    """A random walk of all components, on the worst plane and direction of a grid of 2 degrees
+    (python -m benchmarks planes has the grid): 0.3 % less is allowed. 3.6 % less was found from
+    planes that are larger than all within 13.5 degrees.
+    """
+    rng = np.random.default_rng(1)
+    cases = [150e6 * np.cumsum(rng.standard_normal((12, 6)), axis=0) for _ in range(2)]
+    plane = np.array([[0.96793213, -0.24133259, 0.06975647]])
+    way = np.array([[0.15593503, 0.79490497, 0.58635344]])
+    order, k, life = Flight((0, 1, 1), 2), findley_k(0.3), SnCurve((300e6, 1e6), 5.0).life()
+    there = float(on_planes(cases, order, (plane, way), k, life).damage[0])
+    found = float(life.damage(worst_plane(cases, order, k, life).equivalent).sum())
+    assert found > 0.997 * there
 
 
 def test_academic_example_of_the_guideline() -> None:
