@@ -154,8 +154,8 @@ SAME = {
     ("FRAME_ROTATIONS = np.array(list(product((0.0, 1.0, -1.0), repeat=3)))  # about the axes of a "
      "frame",
      "1.0 → 1.1"): "steps of a search, each of which is followed by a step of half its size",
-    ("for n in range(1, STEP_HALVINGS + 1):", "1 → 2"):
-        "one of the steps of a search more or less",
+    ("frames = grid.reshape(-1, 3, 3)[_starts(grid, rank(grid.reshape(-1, 3, 3)))]", "1 → 2"):
+        "NumPy finds a length that is any negative number",
     ("for a in np.radians(np.arange(0.0, 90.0 + 0.5 * PLANE_STEP, PLANE_STEP)):",
      "90.0 → 99.00000000000001"): "planes beyond the equator, which are those opposite to them",
     ("count = 8 * round(360.0 * np.sin(a) / PLANE_STEP / 8.0) or 1", "1 → 2"):
