@@ -136,7 +136,7 @@ def tension(pin: Pin, material: Material, loaded: str, radius: float, z: Floats)
     load = UnitLoad(loaded, "force", 1)
     fields = HarmonicModel(pin, mesh, material, ("start",)).solve((load,))
     skin = fields.points[: fields.skin]
-    on = np.flatnonzero(np.isclose(skin[:, 0], radius, rtol=1e-9) & (skin[:, 1] <= z.max()))
+    on = np.flatnonzero(np.isclose(skin[:, 0], radius, rtol=1e-9))
     on = on[np.argsort(skin[on, 1], kind="stable")]
     return np.asarray(-np.interp(z, skin[on, 1], fields.stress[on, 2, 0]))
 

@@ -16,6 +16,7 @@ from assess.situation import Situation
 from fea.core.material import Material
 from fea.core.pin_loads import PinLoads
 from fea.support.lugs.lug import Lug, Shank
+from tests.support.each import each
 from tests.support.pins.plain_pins import double_shear
 
 IN, KIP, KSI = 0.0254, 4448.2216, 6.894757e6
@@ -92,6 +93,15 @@ def test_proportions_that_the_clause_demands() -> None:
     s = plate(Shank("round", 4.25 * IN, 10.0 * IN, 4.25 / 2.0 * IN, 0.0))
     (named,) = (m for m in margins_of(s) if m.method == "AISC proportions")
     assert "now 1 b_e) at lug B" in named.needs
+
+
+@each("b_e", [1.61, 1.63, 1.57, 1.37, 0.93])
+def test_proportions_that_are_just_met(b_e: float) -> None:
+    """An end of 1.33 b_e, of which round-off leaves a little less, but not one 0.1 % shorter."""
+    eye = PlateEye((1.0 + 2.0 * b_e) * IN, 1.0 * IN, 1.0 * IN, 0.5 * IN, end=3.0 * IN)
+    b_e = effective_width(eye)
+    assert proportions(replace(eye, end=0.5 * IN + 1.33 * b_e), "B") == []
+    assert len(proportions(replace(eye, end=0.5 * IN + 1.3287 * b_e), "B")) == 1
 
 
 def test_a_narrow_shank_yields_before_its_head() -> None:

@@ -126,6 +126,21 @@ def test_torsion_counts_as_shear() -> None:
     assert turned.demand > section_margin(in_civil(0.0)).demand  # type: ignore[operator]
 
 
+@each("torque", [0.0, 22.0, 23.0, 60.0])
+def test_the_formula_that_is_shown_gives_the_result(torque: float) -> None:
+    """Bent by 67.5 N m of 160 in the middle, b is 0.42; up to v = 0.21, by 22.96 N m of 109, it is
+    shown alone.
+    """
+    s = replace(in_double_shear(0.02, 0.05, 0.03, 0.016, 2e3), codes=("civil",))
+    moments = np.zeros((1, 3, 3))
+    moments[0, [0, 2], 2] = (torque, -torque)
+    last = section_margin(replace(s, loads=replace(s.loads, moments=moments))).work[-1]
+    shown = {q.symbol: q.value for q in last.quantities}
+    assert ("v" in shown) == (torque > 22.96)
+    b, v = shown["b"], shown.get("v", 0.0)
+    assert last.result.value == pytest.approx(4.0 * v * v / (4.0 * v - b) if v else b, rel=1e-9)
+
+
 def test_a_slender_tube_is_named() -> None:
     """d/t of 160: above 70 for S235."""
     thin = section_margin(in_civil(0.0, bore=0.0158))

@@ -120,6 +120,28 @@ def test_yield_names_the_factor_that_is_missing(only: str) -> None:
     assert needs["Melcon-Hoblit oblique yield"] == f"pin.P.lug.B.{missing}"
 
 
+def test_a_load_across_the_shank_names_what_is_missing() -> None:
+    """The factor, the strength, or both; and shows the symbols of the load that is compared."""
+    s = lug_at(90.0)
+    (lug,) = s.lugs
+    soft = replace(lug, material=replace(lug.material, ultimate_strength=None, yield_strength=None))
+    unstated, bare = replace(s, lug_factors={}), replace(s, lugs=(soft,), sized=(soft,))
+    for method, key, strength, symbols in (
+        ("Melcon-Hoblit transverse", "k_tru", "ultimate", ("P_tru", "k_tru", "F_tu")),
+        ("Melcon-Hoblit transverse yield", "k_try", "yield", ("P_try", "k_try", "F_ty")),
+    ):
+        factor, material = f"pin.P.lug.B.factors.{key}", f"material.7075-T6.{strength}_strength"
+        for lacking, needed in (
+            (unstated, [factor]),
+            (bare, [material]),
+            (replace(bare, lug_factors={}), [factor, material]),
+        ):
+            (margin,) = (m for m in margins_of(lacking) if m.method == method)
+            assert keys_in(margin.needs) == needed
+        (shown,) = named(s)[method].work
+        assert (shown.result.symbol, *(q.symbol for q in shown.quantities))[:3] == symbols
+
+
 def test_a_study_along_and_across() -> None:
     """Along the shank there is nothing oblique; pushed towards it, the lug is not pulled."""
     along, across, pushed = named(lug_at(0.0)), named(lug_at(90.0)), named(lug_at(180.0))

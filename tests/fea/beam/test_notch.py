@@ -99,22 +99,22 @@ def test_a_value_that_is_read_off_the_chart() -> None:
     assert values == pytest.approx([1.68, 1.9, 1.4], rel=0.05)
 
 
-@each("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])
-def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...]) -> None:
-    """2h/D = 1: no shaft is left and Peterson's factors end at 1; the fits do within 4 %."""
+@each(("fits", "off"), [(BENDING_FIT, 0.035), (TENSION_FIT, 0.021), (TORSION_FIT, 0.025)])
+def test_a_shaft_that_is_all_shoulder_has_no_notch(fits: tuple[Fit, ...], off: float) -> None:
+    """2h/D = 1: no shaft is left and Peterson's factors end at 1; the fits do within 2 to 3.5 %."""
     for (low, high), *fit in fits:
         for ratio in (low, 0.5 * (low + high), high):
             total = sum(a + b * ratio**0.5 + c * ratio for a, b, c in fit)
-            assert total == pytest.approx(1.0, abs=0.04)
+            assert total == pytest.approx(1.0, abs=off)
 
 
-@each("fits", [BENDING_FIT, TENSION_FIT])
+@each(("fits", "off"), [(BENDING_FIT, 0.013), (TENSION_FIT, 0.004)])
 @each("ratio", [1.1, 1.5, 2.0, 3.0])
-def test_fits_meet_where_they_change(fits: tuple[Fit, ...], ratio: float) -> None:
-    """At h/r = 2, within the 2 % of the fits."""
+def test_fits_meet_where_they_change(fits: tuple[Fit, ...], off: float, ratio: float) -> None:
+    """At h/r = 2, within 1.3 % in bending, 0.4 % in tension."""
     r = (ratio - 1.0) / 4.0
     below, above = (shoulder_factor(fits, ratio, 1.0, r * f) for f in (1.001, 0.999))
-    assert below == pytest.approx(above, rel=0.02)
+    assert below == pytest.approx(above, rel=off)
 
 
 @each("fits", [BENDING_FIT, TENSION_FIT, TORSION_FIT])

@@ -62,6 +62,18 @@ def test_applied_power_is_the_work_of_moving_points(turned: Dynamics) -> None:
     assert np.abs(found - work)[1:-1].max() < 1e-3 * np.abs(found).max()
 
 
+def test_powers_that_are_round_off_grow_as_all_powers_do() -> None:
+    """Of inertia alone, three times as fast: forces are 9 times as large and powers 27 times."""
+    bar = four_bar(gravity=(0.0, 0.0))
+    slow, fast = (
+        ledger(motion_reactions("x", move(bar, [ConstantDrive(0.9, 2.9, T)], TIMES * T), ()))
+        for T in (3.0, 1.0)
+    )
+    assert fast.drives == pytest.approx(27.0 * slow.drives, rel=1e-9)
+    assert fast.min_power == pytest.approx(27.0 * slow.min_power, rel=1e-9)
+    assert 0.0 < slow.min_power < 1e-4 * np.abs(slow.drives).max()
+
+
 def test_work_goes_into_energy_and_loads(turned: Dynamics) -> None:
     """The works of drive and loads against the change of energy, by Simpson's rule."""
     stored = energy(turned.motion)

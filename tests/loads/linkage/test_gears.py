@@ -203,6 +203,58 @@ def test_forces_of_a_rack(push: float) -> None:
     assert found.sliders.couple[0, 0] == pytest.approx(0.0, abs=1e-12)
 
 
+BETA = math.radians(30.0)
+
+
+def wedge(rack: str, closing: bool) -> Linkage:
+    """A wedge on the floor lifts a follower in a guide; on the incline between them one has a rack,
+    the other the pinion. The incline closes the loop of the three sliders if it comes last.
+    """
+    u, centre = np.exp(1j * BETA), (0.0, 0.3)
+    carrier = "follower" if rack == "wedge" else "wedge"
+    to_rack = 0.02 * u * (-1j if rack == "wedge" else 1j)
+
+    def place(z: complex) -> tuple[float, float]:
+        return float(z.real), float(z.imag)
+
+    pitch = complex(*centre) + to_rack
+    incline = Slider("incline", "wedge", "follower", place(pitch - 0.1 * u), place(pitch), place(u))
+    floor = Slider("floor", GROUND, "wedge", (-0.5, 0.0), (0.0, 0.0), (1.0, 0.0))
+    guide = Slider("guide", GROUND, "follower", (0.0, 0.0), (0.0, 0.3), (0.0, 1.0))
+    sides = (Gear("pinion", "C"), Rack(rack, "incline"))
+    return Linkage(
+        (Body("wedge", 1.0, (0.0, 0.0), 0.0), Body("follower", 1.0, centre, 0.0),
+         Body("pinion", 0.5, centre, 1e-4)),
+        (Joint("C", centre, (Connection("bearing", "pinion"),), carrier),), ("wheel",),
+        (floor, guide, incline) if closing else (incline, floor, guide),
+        (Turn("wheel", "pinion", 0.0),), (0.0, 0.0),
+        teeth=(rack_and_pinion("mesh", sides, carrier, centre, place(to_rack), ALPHA),),
+    )  # fmt: skip
+
+
+@each("rack", ["wedge", "follower"])
+@each("closing", [True, False])
+def test_a_rack_whose_slider_closes_a_loop(rack: str, closing: bool) -> None:
+    """Statics of a wedge without friction: of the load on the follower the teeth have the sine, the
+    incline the cosine less the radial force that pushes off the pinion, the floor all, and the
+    guide nothing.
+    """
+    load = Applied("follower", (0.0, 0.3), force=(0.0, -100.0))
+    found = motion_reactions("x", at_rest(wedge(rack, closing), [0.0]), (load,), timed=False)
+    assert bool(gap_weights(found.motion.linkage, found.motion.loops.closing).any()) is closing
+    tangential = 100.0 * math.sin(BETA)
+    assert abs(found.drive[0, 0]) == pytest.approx(0.02 * tangential)
+    tooth = float(np.linalg.norm(force(found, "mesh")[0]))
+    assert tooth == pytest.approx(tangential / math.cos(ALPHA))
+    radial = tangential * math.tan(ALPHA)
+    normal = dict(
+        zip((s.name for s in found.motion.linkage.sliders), found.sliders.normal[0], strict=True)
+    )
+    assert normal["incline"] == pytest.approx(100.0 * math.cos(BETA) - radial)
+    assert normal["floor"] == pytest.approx(100.0)
+    assert normal["guide"] == pytest.approx(0.0, abs=1e-9)
+
+
 def five_bar(friction: float = 0.0, alpha: float = ALPHA) -> Linkage:
     """A geared five-bar (Norton, fig. 2-22): two cranks on meshing gears, two links between; drawn
     so that a crank closes a loop, and its gear's other joint.
@@ -389,7 +441,9 @@ def test_gears_that_lock_each_other_are_named() -> None:
 
 def test_circles_that_cannot_touch_are_refused() -> None:
     pair = (Gear("a", "A"), Gear("b", "B"))
-    for centres, radii in ((((0.0, 0.0), (0.0, 0.0)), (1, 2)), (((0, 0), (1, 0)), (2, -2))):
+    apart = ((0.0, 0.0), (1.0, 0.0))
+    none = [(apart, radii) for radii in ((2, -2), (-1, -2), (0, -2), (-2, 0), (0, 0))]
+    for centres, radii in ((((0.0, 0.0), (0.0, 0.0)), (1, 2)), *none):
         with pytest.raises(LinkageError) as wrong:
             gear_pair("g", pair, GROUND, centres, radii, ALPHA)
         assert wrong.value.code == "gears-apart"

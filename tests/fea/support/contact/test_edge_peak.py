@@ -12,6 +12,7 @@ from scipy.integrate import quad
 from fea.core.material import Material
 from fea.core.pin_loads import Floats, PinLoads
 from fea.core.places import ContactEdge
+from fea.singular.lug_edge import next_power
 from fea.support.contact.edge_peak import (
     EDGE_EXPONENTS,
     EDGE_PEAK_ERROR,
@@ -148,6 +149,42 @@ def test_sharp_edges_have_a_strength_and_no_peak() -> None:
     assert abs(start.K / end.K - 1.0) < 1e-3
     assert start.yield_distance == pytest.approx(end.yield_distance, rel=1e-2)
     assert all(e.yield_distance is None for e in contact_edges(contact(0.0), STEEL))
+
+
+def test_a_single_force_is_that_of_the_first_term() -> None:
+    """Two rings under K x^-s and its mirror image, without another term: K from the half of each,
+    as the force of one tells nothing of A.
+    """
+    s, half = 0.3, 0.01
+    mean = np.full((2, 1), 5e6 * half ** (1.0 - s) / (1.0 - s) / half)
+    for end in (mean, mean[::-1]):
+        found = strength_at_edge(end, np.full(2, half), 0.0, (s, 0.7), D)
+        assert found == pytest.approx(5e6, rel=1e-12)
+
+
+def most_likely(force: Floats, x: Floats, powers: tuple[float, float]) -> float:
+    """K of forces (M, N) between a sharp edge and x, the largest, each to within 3 % of what K
+    gives; a term in x^q is at one diameter within half of the first to one standard deviation.
+    """
+    s, q = powers
+    of_k, of_a = (np.array([quad(lambda y, n=n: y**n, 0.0, end)[0] for end in x]) for n in (-s, q))
+    rows = np.stack([np.ones(len(x)), of_a / of_k], axis=1) / 0.03
+    rows = np.vstack([rows, [0.0, D ** (s + q) / 0.5]])
+    right = np.vstack([(force / of_k / 0.03).T, np.zeros(len(force))])
+    return float(np.linalg.lstsq(rows, right)[0][0].max())
+
+
+def test_the_strength_of_sharp_edges_is_the_most_likely() -> None:
+    """By the forces of the rings up to the middle of the band, with the diameter of the pin."""
+    found = contact(0.0)
+    for edge in contact_edges(found, STEEL):
+        on = found.bands.band == "LMR".index(edge.band)
+        way = slice(None, None, 1 if edge.end == "start" else -1)
+        length, pressure = found.bands.length[on][way], found.contact[0].pressure[on][way]
+        x = np.cumsum(length)[: len(length) // 2]
+        force = np.cumsum(pressure.T * length, axis=1)[:, : len(x)]
+        likely = most_likely(force, x, (edge.exponent, next_power(STEEL, STEEL)))
+        assert pytest.approx(likely, rel=1e-6) == edge.K
 
 
 def test_edges_that_carry_nothing_have_none() -> None:

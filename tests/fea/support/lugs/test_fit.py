@@ -7,10 +7,12 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
 from fea.core.material import Material
-from fea.support.lugs.fit import fitted, yielding_interference
+from fea.core.pin_loads import PinLoads
+from fea.support.lugs.fit import balance_in_lugs, fitted, yielding_interference
 from fea.support.lugs.lug import Bushing, Lug
 from geometry import ArgumentError, GeometryError, Pin, Segment
 from tests.support.each import each
@@ -146,3 +148,17 @@ def test_refused_from_five_times_on() -> None:
     fitted(PIN, STEEL, [replace(A, clearance=-0.999 * most), B])
     with pytest.raises(ArgumentError, match=r"5\.01 times"):
         fitted(PIN, STEEL, [replace(A, clearance=-1.002 * most), B])
+
+
+@each("stiffness", [1e-3, 0.5, 2.0, math.inf])
+def test_a_lug_that_tilts_stiffly_carries_couples(stiffness: float) -> None:
+    """However little: in N m/rad, a link of rubber has less than one. Free to tilt, none does; nor
+    does a link that states the moment that it transmits.
+    """
+    single_shear = PinLoads("pull", ("A", "B"), np.array([[[1e3, 0.0, 0.0], [-1e3, 0.0, 0.0]]]))
+    free = [replace(lug, tilt=0.0) for lug in (A, B)]
+    stiff = [replace(A, tilt=stiffness), free[1]]
+    assert balance_in_lugs(PIN, free, single_shear, None).code == "couple-imbalance"
+    assert balance_in_lugs(PIN, stiff, single_shear, None).refusal is None
+    stated = replace(single_shear, tilting=("A",))
+    assert balance_in_lugs(PIN, stiff, stated, None).code == "couple-imbalance"
