@@ -9,7 +9,7 @@ from reports.data.overview import MAX_LUG_SHARE, PinLine, diameter_law
 from reports.format.numbers import engineering, short
 from reports.tables.strength.overview import FactorAxis
 
-WIDTH, HEIGHT = 260.0, 62.0
+WIDTH, HEIGHT = 260.0, 50.0
 POINTS, REACH = 24, 1.25  # of the curve; the largest over the needed diameter
 CHARACTER, LINE = 6.5, 11.0  # width of a character and height of a line
 LEFT, ABOVE, RIGHT, BELOW = 40.0, 18.0, 10.0, 20.0  # margins for the labels

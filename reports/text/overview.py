@@ -29,7 +29,7 @@ from reports.text.lug_advice import lug_advice, lug_peaks
 MAX_NAMED_CASES = 4
 ROUND_OFF = 1e-9
 STRONGER = 3.0  # required over given strength; no steel exceeds it
-OVER_RANGES_TEXT = "With --over-ranges it sizes them over all that is open."
+OVER_RANGES_TEXT = "Add --over-ranges to size over all that is open."
 ESTIMATES_TEXT = (
     "Diameters are estimates: of five pins tried, 0.9 to 1.1 times what pinstress size found."
 )
@@ -103,7 +103,8 @@ def actions(results: Results, lines: Sequence[PinLine], study: str = "") -> Acti
     required = largest_factor(results.pins)
     if not results.changes:
         open_ = [x.pin for x in lines if x.diameter and x.diameter.whatever]
-        remarks = [f"{narrow_ranges(open_)}, or enlarge the pins over them."] if open_ else []
+        larger = f"or make {'it' if len(open_) == 1 else 'them'} larger."
+        remarks = [f"{narrow_ranges(open_)}, {larger}"] if open_ else []
         over = size_command(open_, study or results.study, required, over_ranges=True)
         return Actions(repairs, remarks, over)
     needed = [line for line in lines if line.diameter and line.diameter.needed]

@@ -80,7 +80,8 @@ def test_ours_are_the_true_ones(seed: int) -> None:
 @each("key", HOLD)
 def test_the_rest_of_the_printed_formulas_holds(key: tuple[str, str], seed: int) -> None:
     true = quantity(seed, key[1])
-    assert value(HOLD[key], seed, key[1]) == pytest.approx(true, rel=1e-9)
+    # One of the components is zero, or round-off of the others.
+    assert value(HOLD[key], seed, key[1]) == pytest.approx(true, rel=1e-9, abs=1e-12)
 
 
 @each("seed", SEEDS)

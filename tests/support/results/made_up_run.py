@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from assess.opinion.records import BeamCheck
@@ -27,7 +29,11 @@ def make_results() -> Results:
         units=UNITS,
         required_safety_factor=1.5,
         tolerance=0.02,
-        pins=tuple(pin(name, case) for case in ("retract", "landing") for name in PINS),
+        pins=tuple(
+            replace(pin(name, case), units=UNITS)
+            for case in ("retract", "landing")
+            for name in PINS
+        ),
         shapes=tuple(shape(name) for name in PINS),
         reactions=(moving(times), static()),
         drive=(drive(times),),
