@@ -7,7 +7,7 @@ import pandas
 import pytest
 
 from assess.fatigue.assess import FatigueMaterial, Spectrum, assess
-from assess.fatigue.critical_plane import findley_k, worst_plane
+from assess.fatigue.critical_plane import PLANE_STEP, _grid, findley_k, worst_plane
 from assess.fatigue.critical_points import signed_von_mises
 from assess.fatigue.fkm import FkmMaterial, _parameters, _repetitions, p_ram_life
 from assess.fatigue.flight import Flight, case_by_case, flight, rainflow, turning_points
@@ -250,6 +250,29 @@ def test_alternating_torsion_has_its_whole_range_on_the_critical_plane() -> None
     worst = worst_plane([shear], Flight((0,), 1), k, SnCurve((50.0, 1e6), 5.0).life())
     expected = 2.0 * 100.0 * np.hypot(1.0, k) / (k + np.hypot(1.0, k))
     assert worst.equivalent.max() == pytest.approx(expected, rel=5e-3)
+
+
+@each("direction", [(1.0, 0.0, 0.0), (0.3, -0.5, 0.8), (-0.7, 0.2, 0.4)])
+def test_the_critical_plane_of_alternating_tension(direction: Direction) -> None:
+    """Findley's f, S / 2 sin 2 phi + k S cos^2 phi at phi between force and normal, is largest where
+    tan 2 phi = 1 / k, and found to within 0.1 degrees, the last step of the search.
+    """
+    k, stress = findley_k(0.3), _uniaxial([100.0, -100.0], direction)
+    worst = worst_plane([stress], Flight((0,), 1), k, SnCurve((50.0, 1e6), 5.0).life())
+    along = abs(worst.normal @ np.array(direction)) / np.linalg.norm(direction)
+    phi = math.degrees(math.acos(along))
+    assert phi == pytest.approx(math.degrees(0.5 * math.atan(1.0 / k)), abs=0.1)
+
+
+def test_every_plane_has_one_of_the_grid_beside_it() -> None:
+    """At most 0.75 steps from any direction, either way; its frames are orthonormal."""
+    frames = _grid()
+    product = frames @ frames.swapaxes(-1, -2)
+    assert product == pytest.approx(np.broadcast_to(np.eye(3), product.shape), abs=1e-12)
+    any_ = np.random.default_rng(5).standard_normal((2000, 3))
+    any_ /= np.linalg.norm(any_, axis=1)[:, None]
+    nearest = np.abs(any_ @ frames[:, 0, 0].T).max(axis=1)
+    assert np.degrees(np.arccos(nearest.min())) < 0.75 * PLANE_STEP
 
 
 def test_the_search_finds_what_a_fine_grid_finds() -> None:
