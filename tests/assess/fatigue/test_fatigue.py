@@ -254,8 +254,8 @@ def test_alternating_torsion_has_its_whole_range_on_the_critical_plane() -> None
 
 @each("direction", [(1.0, 0.0, 0.0), (0.3, -0.5, 0.8), (-0.7, 0.2, 0.4)])
 def test_the_critical_plane_of_alternating_tension(direction: Direction) -> None:
-    """Findley's f, S / 2 sin 2 phi + k S cos^2 phi at phi between force and normal, is largest where
-    tan 2 phi = 1 / k, and found to within 0.1 degrees, the last step of the search.
+    """Findley's f, S / 2 sin 2 phi + k S cos^2 phi at phi between force and normal, is largest
+    where tan 2 phi = 1 / k, and found to within 0.1 degrees, the last step of the search.
     """
     k, stress = findley_k(0.3), _uniaxial([100.0, -100.0], direction)
     worst = worst_plane([stress], Flight((0,), 1), k, SnCurve((50.0, 1e6), 5.0).life())
