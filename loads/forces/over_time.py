@@ -95,7 +95,7 @@ class OverTime:
 
 @dataclass(frozen=True)
 class Exerted:
-    """What joints and drives exert at times (T,), s.
+    """The forces of joints and drives at times (T,), s.
 
     drive, power: (T, D) N or N m, and W.
     """

@@ -121,8 +121,7 @@ def _powers(n: int, r: float, kappa: float, solid: bool = False) -> Floats:
         (kappa + n - 1, n - 1 - kappa, -(n + 2) * (n - 1), -n * (n - 1)),  # r^(2 - n)
     ]
     rows, powers = [*up, *down], [n, n + 2, -n, 2 - n]
-    columns_used = [1, 2] if n == 1 else [0, 1, 2, 3]
-    columns_used = [i for i in columns_used if i < 2 or not solid]
+    columns_used = [i for i in ((1, 2) if n == 1 else range(4)) if i < 2 or not solid]
     columns = [
         np.array(rows[i]) * r ** (powers[i] - np.array([1.0, 1.0, 2.0, 2.0])) for i in columns_used
     ]
@@ -173,8 +172,7 @@ def _section(hole: float, material: Material) -> float:
     constants = np.linalg.lstsq(rows, load)[0]  # equilibrium makes one row redundant
 
     def moved(r: float) -> Floats:
-        particular = np.array([alpha, beta]) * r**2
-        return np.asarray(terms(r)[:2] @ constants / (2.0 * mu) + particular)
+        return np.asarray(terms(r)[:2] @ constants / (2.0 * mu) + np.array([alpha, beta]) * r**2)
 
     at = 0.5 * (1.0 + hole) + 0.5 * (1.0 - hole) * _GAUSS_POINTS
     along = np.array([0.5 * (u - v) for u, v in map(moved, at.tolist())])

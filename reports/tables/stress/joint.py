@@ -64,7 +64,7 @@ def _range(row: PinRow[Variation]) -> JointRange:
     return row.pin.joint.range
 
 
-SHARE: dict[str, Any] = {"show": used_text, "drop_if_empty": True}  # options of columns
+SHARE_SHOWN: dict[str, Any] = {"show": used_text, "drop_if_empty": True}  # options of columns
 BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
     *PIN_AND_CASE,
     *texts("connection=of.name"),
@@ -76,8 +76,8 @@ BAND_COLUMNS: list[Column[PinRow[BandContact]]] = [
     *unit_columns("length force stress"),
     Column("friction", lambda row: row.of.friction or None, "", "friction", drop_if_empty=True),
     *fields("of.friction_torque", "moment", heading="torque by friction", drop_if_empty=True),
-    Column("carrying_share", carrying_share, heading="carries over", **SHARE),
-    Column("bearing_share", bearing_share, heading="of bearing strength", **SHARE),
+    Column("carrying_share", carrying_share, heading="carries over", **SHARE_SHOWN),
+    Column("bearing_share", bearing_share, heading="of bearing strength", **SHARE_SHOWN),
 ]
 LINE_LOAD_COLUMNS: list[Column[PinRow[LoadStep]]] = [
     *PIN_AND_CASE,
