@@ -5,7 +5,7 @@ uncertain properties of the joint.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 
 import numpy as np
@@ -124,9 +124,7 @@ class HeldContact:
         if cut is None:
             return model.pin
         whole = replace(cut, profile=model.whole)
-        ringed = CutPin(model.pin, cut.cuts.values())
-        made = {f.name: getattr(ringed, f.name) for f in fields(ringed)}
-        return RingedCutPin(**made, whole=whole)
+        return RingedCutPin(model.pin, cut.features, whole=whole)
 
     def start(self, case: str) -> PinLoads:
         """The pressures of a case at the instants from which patterns are made."""
