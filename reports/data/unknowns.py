@@ -164,9 +164,18 @@ def factor_spread(row: PinResult) -> Ends | None:
     return None if all(each is None for each in ranges) else (low, high)
 
 
-def growth_beneath(row: PinResult) -> float:
-    """Return the ratio, at least 1, of the largest stress beneath contact over all that is open
-    together to that of the row; 1 without contact.
+def growth(row: PinResult | None) -> tuple[float, float]:
+    """Return the ratio, at least 1, of the largest stress over all that is open together to the
+    stress of a row, and that of the stress beneath contact; 1 for None or a row without a factor.
+    """
+    spread = factor_spread(row) if row else None
+    if row is None or spread is None or not row.safety_factor:
+        return 1.0, 1.0
+    return max(row.safety_factor / spread[0], 1.0), _growth_beneath(row)
+
+
+def _growth_beneath(row: PinResult) -> float:
+    """Return the growth of the stress beneath contact, as `growth` does; 1 without contact.
 
     The ratios over the joint, the landing, the links and the strength are multiplied.
     """
@@ -201,7 +210,7 @@ def least_factor(row: PinResult) -> float:
     """
     spread = factor_spread(row)
     known = spread[0] if spread else row.safety_factor or math.inf
-    return min(known, beneath_factor(row) / growth_beneath(row))
+    return min(known, beneath_factor(row) / _growth_beneath(row))
 
 
 def without_range(row: PinResult) -> bool:

@@ -30,7 +30,6 @@ from pinstress.explore.reliability.form import (
     form_quantile,
 )
 from pinstress.explore.reliability.open_ranges import (
-    growth,
     left_out,
     with_open_ranges,
     without_strength_ranges,
@@ -51,6 +50,7 @@ from pinstress.study.schema.vary import ReliabilityTable
 from reports.data.reliability import SYSTEM_ROW, Driver, FirstOrder, Reliability, Spread
 from reports.data.results import Results
 from reports.data.row import PinResult
+from reports.data.unknowns import growth
 from reports.format.words import not_judged
 
 if TYPE_CHECKING:

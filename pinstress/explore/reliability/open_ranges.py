@@ -12,7 +12,6 @@ from pinstress.explore.sweep.number import Path
 from pinstress.study.reading.file import Study
 from pinstress.study.reading.in_python import changed_study
 from reports.data.row import LandingRange, PinResult
-from reports.data.unknowns import factor_spread, growth_beneath
 
 CLEARANCE = "clearance"  # of all lugs of a joint, which are varied together
 CLEARANCE_KEYS = (CLEARANCE, "interference", "fit")
@@ -50,17 +49,6 @@ def without_strength_ranges(study: Study, laws: Collection[Path]) -> Study:
     ]
     keys = [f"material.{key_part(name)}.range" for name in by_law]
     return changed_study(study, {key: {} for key in keys}) if keys else study
-
-
-def growth(row: PinResult | None) -> tuple[float, float]:
-    """Return the ratio, at least 1, of the largest stress over all open ranges of a row to the
-    stress as described, and that of the stress beneath contact; 1 for None or a row without a
-    factor.
-    """
-    spread = factor_spread(row) if row else None
-    if row is None or spread is None or not row.safety_factor:
-        return 1.0, 1.0
-    return max(row.safety_factor / spread[0], 1.0), growth_beneath(row)
 
 
 def left_out(

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from assess.judgement import DEPENDS, FAILS, NOT_DECIDED, SAFE
-from pinstress.explore.reliability.open_ranges import growth
-from reports.data.decision import beneath_factor, factor_ends, limit, low_factor
+from reports.data.decision import beneath_factor, factor_ends, limit
 from reports.data.dependence import PRESS_FIT
 from reports.data.headline import JudgedCheck, worst_checks
 from reports.data.over_loads import BENEATH_CONTACT
 from reports.data.results import Results
 from reports.data.row import PinResult
-from reports.data.unknowns import factor_spread
+from reports.data.unknowns import factor_spread, growth
 from reports.format.numbers import DASH, engineering
 from reports.format.ranges import factor_range, factor_text
 from reports.format.words import margin_words, over_words
@@ -48,7 +47,7 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
     worst = min(rows, key=lambda p: min(p.safety_factor or 0.0, beneath_factor(p)), default=None)
     why = why_missed(results, pin)
     counted = [(p, factor) for p in rows if (factor := _counted(p))]
-    lowest = [(p, factor, _lowest_over_ranges(p, factor)) for p, factor in counted]
+    lowest = [(p, factor, _counted(p, *growth(p))) for p, factor in counted]
     least = min(lowest, key=lambda x: x[2] / limit(x[0]), default=None)
     open_ = any(p.depends_on or factor_spread(p) for p in rows)
     return JudgedPin(
@@ -60,16 +59,6 @@ def judged_pin(results: Results, pin: str) -> JudgedPin:
         tuple((p.case, factor / low) for p, factor, low in lowest if low > 0.0),
         factor_text(least[2], limit(least[0])) if least and open_ else "",
     )
-
-
-def _lowest_over_ranges(row: PinResult, factor: float) -> float:
-    """Return the lowest factor of a row over all ranges of the study together.
-
-    factor: of the row as described, as sizing counts it.
-    """
-    on_row, on_beneath = growth(row)
-    of_row = factor_ends(row)[0] if row.verdict != "singular" else row.safety_factor or factor
-    return min(of_row / on_row, beneath_factor(row) / on_beneath)
 
 
 def _outcome(results: Results, pin: str, why: str) -> str:
@@ -97,13 +86,16 @@ def _lowest(worst: PinResult | None) -> tuple[str, str]:
     return factor_range(worst, "–"), worst.case
 
 
-def _counted(row: PinResult) -> float | None:
+def _counted(row: PinResult, on_row: float = 1.0, on_beneath: float = 1.0) -> float:
     """Return the factor of a row as sizing counts it; for a singular row, the factor itself rather
-    than the lower end of its interval.
+    than the lower end of its interval. It is 0 for a row without stress or factor.
+
+    on_row, on_beneath: factors on the stress of the row and on that beneath contact.
     """
-    if row.verdict == "singular" and row.safety_factor is not None:
-        return min(row.safety_factor, beneath_factor(row))
-    return low_factor(row)
+    factor = row.safety_factor or 0.0
+    if row.verdict != "singular":
+        factor = factor_ends(row)[0] if row.safety_factor and row.max_von_mises else 0.0
+    return min(factor / on_row, beneath_factor(row) / on_beneath)
 
 
 def _stricter(worst: PinResult) -> str:

@@ -16,7 +16,6 @@ from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
 from pinstress.analysis.stored import PinOutcome
-from pinstress.explore.reliability.open_ranges import growth
 from pinstress.explore.size.counted import beneath, why_unsolved
 from pinstress.explore.size.scaled_study import resized_study
 from pinstress.explore.size.section_law import Accuracy, PinTrial
@@ -24,6 +23,7 @@ from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
+from reports.data.unknowns import growth
 
 # Cases whose stress is below this share of the largest are solved only until it is decided that
 # they reach the factor

@@ -17,10 +17,11 @@ from fea.support.records import (
     Variation,
 )
 from pinstress.explore.reliability.designs import Answers
-from pinstress.explore.reliability.open_ranges import growth, left_out, with_open_ranges
+from pinstress.explore.reliability.open_ranges import left_out, with_open_ranges
 from pinstress.explore.reliability.risk import RiskColumn
 from pinstress.explore.sweep.number import Path
 from reports.data.row import LandingRange, PinResult
+from reports.data.unknowns import growth
 from tests.support.each import each
 from tests.support.results.made_up_run import make_results
 from tests.support.results.rows import with_values
