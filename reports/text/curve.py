@@ -35,15 +35,15 @@ def reached_lines(curve: FactorCurve) -> list[str]:
     if curve.required is None:
         judged = any(point.outcome.startswith((SAFE, FAILS)) for point in curve.points)
         return ["Required factors differ; each result is by its own."] if judged else []
-    lines, where = [], {pin: [r for r in curve.reached if r.pin == pin] for pin in curve.pins}
-    for pin, reached in where.items():
-        if reached:
-            lines += [_reached(curve, crossing) for crossing in reached]
-        elif any(p.safety_factor for p in curve.least(pin)):
-            lines.append(f"Pin {pin} reaches the required factor {curve.required:g} ")
-            lines[-1] += f"{_where(curve, curve.required, pin)}."
-        if lines and (open_ := _open(curve, curve.required, pin)):
-            lines[-1] = f"{lines[-1][:-1]} as computed, but not every result is safe ({open_})."
+    lines = list[str]()
+    for pin in curve.pins:
+        own = [_reached(curve, crossing) for crossing in curve.reached if crossing.pin == pin]
+        if not own and any(p.safety_factor for p in curve.least(pin)):
+            where = _where(curve, curve.required, pin)
+            own = [f"Pin {pin} reaches the required factor {curve.required:g} {where}."]
+        if own and (open_ := _open(curve, curve.required, pin)):
+            own[-1] = f"{own[-1][:-1]} as computed, but not every result is safe ({open_})."
+        lines += own
     return lines
 
 
