@@ -13,6 +13,7 @@ from pinstress.study.schema.shown import in_toml
 
 MAX_TABLE_SIZE = 256 * MB
 FILE_HASH_DIGITS = 12  # number of digits of a file's hash
+FILE_MARK = " (SHA-256 "  # follows a value that names a file
 IGNORED_TEXTS = "title", "report", "assumptions"  # texts that affect no result
 
 
@@ -35,8 +36,11 @@ def require_unchanged(study: Study, before: dict[str, str]) -> None:
     before: `inputs` when the files were read first. A command that reads them more than once would
     otherwise mix results of the old and the new content.
     """
-    now = inputs(study)
-    if changed := [key for key in now if now[key] != before.get(key)]:
+    # Only values that name files are read again: a sweep asks after every batch of designs.
+    files = {key for key, text in before.items() if FILE_MARK in text}
+    leaves = _leaves(raw_study(study), "") if files else ()
+    now = {key: _written(study, value) for key, value in leaves if key in files}
+    if changed := [key for key in now if now[key] != before[key]]:
         raise study.error(
             f"{', '.join(changed)}: the file has changed since the command began; start again, or "
             "put the old file back",
@@ -64,7 +68,7 @@ def _written(study: Study, value: Any) -> str:
     content = _file(study, value)
     if content is None:
         return value
-    return f"{value} (SHA-256 {hashlib.sha256(content).hexdigest()[:FILE_HASH_DIGITS]})"
+    return f"{value}{FILE_MARK}{hashlib.sha256(content).hexdigest()[:FILE_HASH_DIGITS]})"
 
 
 def _file(study: Study, name: str) -> bytes | None:
