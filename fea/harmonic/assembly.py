@@ -27,9 +27,9 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
 from fea.core.material import Material
-from fea.core.sparsity import Pattern
 from geometry.mesh.section_mesh import MeridianMesh, triangle_shapes
 from pinbase.arrays import Floats, Ints
+from pinbase.sparsity import Pattern
 
 
 class Section:

@@ -14,9 +14,9 @@ import scipy.sparse as sp
 from skfem import Basis, ElementTetP1, ElementTetP2, MeshTet1, MeshTet2
 
 from fea.core.material import Material
-from fea.core.sparsity import Pattern
 from fea.core.voigt import VOIGT_TO_TENSOR
 from pinbase.arrays import Floats, Ints
+from pinbase.sparsity import Pattern
 
 
 class Discretisation:

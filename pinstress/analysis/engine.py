@@ -1,12 +1,12 @@
 """A study that can be solved again with changes; what a change does not affect is not solved again.
 
 A full answer equals that of `pinstress.run` on the changed study, to the last bit. A quick answer
-scales a pin in contact from the study as it is (pinstress.analysis.scaled). It solves the pin in
-full if contact has moved, if contact arcs are too narrow for rough cells, or if the stress of lugs
-or of a hardened surface is needed, which requires fine cells. The range over the joint is scaled,
-too; if the change may alter it, it is computed on rough cells instead. Neither answer depends on
-what was asked before: every stored result has the content of everything it depends on as its key,
-and nothing is updated in place.
+scales a pin in contact from the study as it is (pinstress.analysis.scaled). A case in which contact
+has moved, or arcs are too narrow for rough cells, is solved on usual cells, and in full if these
+leave it open. A pin is solved in full if the stress of lugs or of a hardened surface is needed,
+which requires fine cells. The range over the joint is scaled, too; if the change may alter it, it
+is computed on rough cells instead. Neither answer depends on what was asked before: every stored
+result has the content of everything it depends on as its key, and nothing is updated in place.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from functools import cached_property, partial
 from types import MappingProxyType
 from typing import Any, Literal, TypeVar, get_args
 
+from assess.judgement import BELOW_YIELD, FAILS, SAFE, YIELDS
 from fea.core.requirement import Requirement
 from pinbase.memo import Memo
 from pinbase.processes.threads import one_thread
@@ -234,9 +235,7 @@ class Engine:
         return solve_tasks(plan, cache=SolvedPins(self._answers), memo=self._memo)
 
     def _scaled(self, plan: Plan, task: Task) -> PinOutcome | None:
-        """The outcome of a task, scaled from the study as it is, or in full if contact has changed;
-        None if the task cannot be scaled.
-        """
+        """The outcome of a task, scaled from the study as it is; None if it cannot be scaled."""
         name = task.pin.name
         if name not in self._as_is:
             self._as_is[name] = self._both(name)
@@ -252,8 +251,9 @@ class Engine:
         now = self._coarse(plan, task, varied)
         if not now or not {row.case for row in now} <= as_is.keys():
             return None
-        if any(contact_changed(as_is[x.case][1], x) for x in now):
-            return self._solve(plan, [task])[0]
+        moved = {x.case for x in now if contact_changed(as_is[x.case][1], x)}
+        if moved:
+            return self._partly_scaled(plan, task, moved)
         if varied and not all(map(has_own_range, now)):
             return None
         rows = self._judged(plan, task, now)
@@ -265,6 +265,33 @@ class Engine:
                 return None
             rows = self._judged(plan, task, again)
         return PinOutcome(rows) if rows else None
+
+    def _partly_scaled(self, plan: Plan, task: Task, moved: Collection[str]) -> PinOutcome | None:
+        """The outcome of a task in some of whose cases contact has moved; only the others are
+        scaled.
+        """
+        rows = [self._on_usual_cells(plan, task.of_case(x)) for x in task.loads if x.case in moved]
+        if still := tuple(x for x in task.loads if x.case not in moved):
+            scaled = self._scaled(plan, replace(task, loads=still))
+            if scaled is None:
+                return None
+            rows += scaled.rows
+        order = [x.case for x in task.loads]
+        return PinOutcome(tuple(sorted(rows, key=lambda x: order.index(x.case))))
+
+    def _on_usual_cells(self, plan: Plan, task: Task) -> PinResult:
+        """The row of a task with one case, on usual cells of contact; in full if their error is
+        large and leaves open whether the pin is safe.
+
+        On arcs too narrow for these cells their error is large, and says so.
+        """
+        usual = replace(plan, requirement=replace(_quick(plan.requirement), cells="usual"))
+        (row,) = self._solve(usual, [task])[0].rows
+        error, value = row.error_estimate, row.max_von_mises
+        known = error is not None and value is not None and error <= QUICK_TOLERANCE * value
+        if known or row.outcome in (SAFE, BELOW_YIELD, FAILS, YIELDS):
+            return row
+        return self._solve(plan, [task])[0].rows[0]
 
     def _landing_scales(self, plan: Plan, task: Task, case: str) -> bool:
         """Whether the range of a landing follows from that of the study as it is."""

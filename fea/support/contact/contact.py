@@ -11,8 +11,10 @@ couple of the pressures causes. Shifts and turn are the Lagrange multipliers of 
 resultant on the bands of a link is the link's force, and the couples on the pin are in balance.
 
 This is a linear complementarity problem with a positive definite matrix. A primal-dual active set
-solves it in few steps. The active set may cycle where barely more cells touch than are needed to
-hold the pin; then a descent of the energy finds the cells (fea.support.contact.least_energy). As
+solves it in few steps. Where the cells in contact leave the pin or a lug free to move, as one line
+of cells does across the line, it moves until the next cells touch. The active set may cycle where
+barely more cells touch than are needed to hold the pin; then a descent of the energy finds the
+cells (fea.support.contact.least_energy). As
 long as the same cells are in contact, everything is linear in the loads. The response of each set
 of cells is therefore computed once and kept, so that neighbouring instants cost almost nothing.
 
@@ -43,7 +45,7 @@ from pinbase.arrays import Mask
 
 # Limits of the iteration and of the descent, chosen by judgement. They decide how soon contact is
 # found; the contact itself is unique.
-MAX_ACTIVE_SET_STEPS = 30
+MAX_ACTIVE_SET_STEPS = 20
 # Springs hold the pin during the descent. SPRING_FORCE is the force of the first springs, relative
 # to the loads, when they stretch by the largest gap and the elastic displacement. SPRING_SOFTENING
 # is the factor on their stiffness where they have passed on too little of the loads. Of 400 random
@@ -232,15 +234,39 @@ class ContactProblem:
             force, gap, motion = answer.under(required)
             wrong_force = active & (force < -SIGN_TOLERANCE * np.abs(force).max(initial=0.0))
             wrong_gap = ~active & (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0))
+            freely = answer.freely(required)
             if not (wrong_force | wrong_gap).any():
-                # Forces that miss the required resultants, as in one of two free lugs, are none.
-                balanced = self._balances(force, required, answer)
-                return self._state(force, gap, motion, step) if balanced else None
+                if self._balances(force, required, answer):
+                    return self._state(force, gap, motion, step)
+                if freely is None:  # loads that the cells cannot react, as those of a free lug
+                    return None
             if (key := active.tobytes()) in seen:
                 return None  # a cycle
             seen.add(key)
-            active = (active & ~wrong_force) | self._cells_to_close(gap, wrong_gap, active)
+            if freely is None:
+                closing = self._cells_to_close(gap, wrong_gap, active)
+            else:
+                closing = self._first_to_touch(*freely, active) & ~active
+            active = (active & ~wrong_force) | closing
         return None
+
+    def _first_to_touch(self, gap: Floats, rate: Floats, active: Mask) -> Mask:
+        """A mask (U,) of the cells that touch first in each band when the gaps change at a rate.
+
+        Cells that overlap and that the motion does not change are in it, too.
+        """
+        # The motion along the way starts anywhere, so that gaps may be negative. Not only the first
+        # cell closes, but its sector on all rings in contact: one ring alone would take the whole
+        # force and turn the pin.
+        size = SIGN_TOLERANCE * np.abs(rate).max(initial=0.0)
+        overlap = (gap < -SIGN_TOLERANCE * np.abs(gap).max(initial=0.0)) & (np.abs(rate) <= size)
+        way, closing = np.full(len(gap), np.inf), rate < -size
+        np.divide(gap, -rate, out=way, where=closing)
+        first = self._deepest(way, closing).reshape(len(self.bands.z), -1)
+        touched = active.reshape(first.shape).any(axis=1)
+        for ring, k in np.argwhere(first):
+            first[touched & (self.bands.band == self.bands.band[ring]), k] = True
+        return np.asarray(overlap | first.ravel())
 
     def _cells_to_close(self, gap: Floats, overlaps: Mask, active: Mask) -> Mask:
         """A mask of the overlapping cells to close in the next step."""

@@ -8,7 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from pinbase.arrays import Floats, Ints
+from pinbase.arrays import Floats, Ints, Mask
+
+# Relative to the stiffest motion: below this stiffness no cell in contact resists a motion.
+FREE_STIFFNESS = 1e-9
 
 
 @dataclass(frozen=True)
@@ -87,14 +90,14 @@ class Answer:
 
     def motion(self, lost: Floats) -> Floats:
         """The smallest motions (Y,) that make up for missing resultants (Y,)."""
-        modes, compliance = self._modes
+        modes, compliance, _ = self._modes
         solved = modes @ (compliance * (modes.T @ (lost / self.reach)))
         return np.asarray(solved / self.reach, dtype=np.float64)
 
     @cached_property
-    def _modes(self) -> tuple[Floats, Floats]:
-        """The eigenvectors (Y, Y) of the equations of the motions, and the compliance of each mode,
-        (Y,), zero where the cells in contact do not resist it.
+    def _modes(self) -> tuple[Floats, Floats, Mask]:
+        """The eigenvectors (Y, Y) of the equations of the motions, the compliance of each mode,
+        (Y,), zero where it is lost in round-off, and a mask (Y,) of those that no cell resists.
         """
         # Motions are scaled by the largest gap change that they cause. Otherwise a turn, whose
         # unit differs from that of a shift, would look like a mode without stiffness where few
@@ -102,7 +105,22 @@ class Answer:
         stiffness, modes = np.linalg.eigh(self.system / np.outer(self.reach, self.reach))
         size = np.abs(stiffness)
         moves = size > len(size) * np.finfo(np.float64).eps * size.max(initial=0.0)
-        return modes, np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=moves)
+        compliance = np.divide(1.0, stiffness, out=np.zeros_like(stiffness), where=moves)
+        return modes, compliance, size < FREE_STIFFNESS * size.max(initial=0.0)
+
+    def freely(self, required: Floats) -> tuple[Floats, Floats] | None:
+        """The gaps (U,), m, without the motions that no cell in contact resists, and the rates (U,)
+        at which they change by such motions along the missing resultants; None without such
+        motions.
+        """
+        modes, compliance, free = self._modes
+        if not free.any():
+            return None
+        lost = modes.T @ ((self.right - required) / self.reach)
+        parts = np.column_stack([np.where(free, 0.0, compliance * lost), np.where(free, lost, 0.0)])
+        gap, moving = self._gaps
+        held, rate = (moving @ (modes @ parts / self.reach[:, None])).T
+        return gap + held, rate
 
     def under(self, required: Floats) -> tuple[Floats, Floats, Floats]:
         """The forces, gaps and rigid motions with which the cells have the required resultants."""

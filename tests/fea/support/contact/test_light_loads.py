@@ -111,6 +111,26 @@ def test_a_first_guess_that_holds_a_lug_by_one_cell() -> None:
     assert alone  # some of them do not settle by themselves
 
 
+def test_a_line_of_cells_moves_along_its_lug_until_its_neighbours_touch() -> None:
+    """A loose middle lug whose force points beside the only line of cells in contact, which cannot
+    react the part across it: four steps, from whichever side, where the active set ran in circles.
+    """
+    contact = small_and_loose(24, 6, 3)
+    line = np.zeros((18, 24), dtype=bool)
+    line[:6, 7:18] = line[12:, 7:18] = line[6:12, 0] = True
+    guess = np.zeros(line.size, dtype=bool)
+    for gap, load, side in itertools.product((5e-6, 1e-4), (10.0, 1e3), (0.002, -0.01)):
+        loose = contact.changed(np.repeat([0.0, gap, 0.0], 6), (math.inf,) * 3)
+        forces = load * np.outer([0.5, -1.0, 0.5], [1.0, side])
+        required = loose.required_resultants(forces)
+        state, least = loose._settled(required, line.ravel()), loose._by_energy(required, guess)
+        assert state is not None
+        assert least is not None
+        assert state.steps == 4
+        assert list(np.flatnonzero(state.active[6:12].any(axis=0))) == [0, 1 if side > 0 else 23]
+        assert state.pressure == pytest.approx(least.pressure, abs=1e-9 * state.pressure.max())
+
+
 @pytest.mark.parametrize("load", [1.0, 1e3])
 def test_a_couple_that_no_lug_reacts_is_told(load: float) -> None:
     """Of lugs free to tilt in single shear; the descent is asked, too, since it may be the one to

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea.core.sparsity import Pattern
+from pinbase.sparsity import Pattern
 
 
 def test_sums_are_those_of_a_dense_matrix() -> None:
