@@ -1,4 +1,4 @@
-"""Factors of safety against one number of a study, each design solved as a sweep solves it."""
+"""Factors of safety against one number of a study, each design solved as a run solves it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,12 @@ import numpy as np
 
 from pinbase.errors import ArgumentError
 from pinbase.processes.pool import Job, ProcessDied, Progress, Tell, in_parallel
-from pinstress.explore.sweep.evaluate import DesignRow, Evaluator, rows_without_maximum
+from pinstress.explore.sweep.evaluate import (
+    STRENGTH_KEYS,
+    DesignRow,
+    Evaluator,
+    rows_without_maximum,
+)
 from pinstress.explore.sweep.laws import Floats
 from pinstress.explore.sweep.number import Number, number_at, si_value
 from pinstress.explore.sweep.workers import PROCESS_DIED
@@ -51,7 +56,8 @@ def curve(
     low, high = _range(study, number, ends)
     if pins is None and number.path[0] == "pin":
         pins = [str(number.path[1])]
-    evaluator = Evaluator(study, [number], pins)
+    # A strength changes no stress, which all points share if it is known in every case.
+    evaluator = Evaluator(study, [number], pins, every=number.path[-1] in STRENGTH_KEYS)
     values = values_between(low, high, number.nominal, points)
     # Neighbouring values share the most data, so each process takes one part of the range.
     parts = np.array_split(values, min(jobs, len(values)))

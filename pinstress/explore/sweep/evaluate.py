@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from collections import OrderedDict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -127,6 +127,8 @@ class Evaluator:
     """The evaluator of a study whose numbers change.
 
     pins, cases: names; all by default.
+    every: whether the maximum of every case is wanted; otherwise minor cases are only decided, as
+    in a run, by the strengths of the design, so that designs of other strengths share nothing.
     parameters: the numbers that change, in the order of the values passed to `rows`.
     table: pin and case of each row of a design, in the order of the rows.
     memo: meshes, unit fields and flexibilities of the pins.
@@ -142,6 +144,8 @@ class Evaluator:
         parameters: Iterable[Parameter | Number],
         pins: Iterable[str] | None = None,
         cases: Iterable[str] | None = None,
+        *,
+        every: bool = True,
     ) -> None:
         self.numbers = tuple(p.number if isinstance(p, Parameter) else p for p in parameters)
         self._raw = {k: v for k, v in raw_study(study).items() if k not in IGNORED_TABLES}
@@ -150,6 +154,7 @@ class Evaluator:
         self.files: tuple[Path, ...] = ()
         # The memory that was free at the start; each query would take a millisecond.
         self._memory = plan.requirement.memory
+        self._every = every or plan.requirement.every
         self._cases = tuple(plan.loads)
         rows = {(t.pin.name, case.case): None for t in plan.tasks for case in t.loads}
         self._pins = tuple(dict.fromkeys(pin for pin, _ in rows))
@@ -291,6 +296,7 @@ class Evaluator:
         key = name, *(values[k] for k in self._of_shapes)
         pin = self._shapes.get(key) or self._shapes.put(key, pin_of(study, name))
         requirement = requirement_of(study, memory=self._memory)
+        requirement = replace(requirement, every=self._every)
         posed = []
         for task in tasks(study, [pin], loads):
             # With the goal to decide, strengths affect where stress is read; on a pin with a

@@ -108,7 +108,7 @@ def elastic(material: Material) -> Material:
 
 
 def _alike(study: Study, task: Task, requirement: Requirement) -> str:
-    decides = requirement.goal == "decide"
+    decides = requirement.goal == "decide" or bool(task.lugs and not requirement.every)
     return digest(
         (
             shape_of(task.pin),
