@@ -21,6 +21,38 @@ from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
 
 DIAMETER = "pin.B.profile[2].diameter"
+LOOSE = """
+title = "A pin in a loose lug, under a heavy and a light load"
+units = "mm-N-s"
+[analysis]
+joints = "contact"
+required_safety_factor = 2
+limit_load = "never"
+[material.steel]
+youngs_modulus = "205 GPa"
+poisson_ratio = 0.3
+yield_strength = "600 MPa"
+[pin.P]
+material = "steel"
+profile = [
+  { length = 10, diameter = 20, connection = "left" },
+  { length = 1, diameter = 20 },
+  { length = 20, diameter = 20, connection = "middle" },
+  { length = 1, diameter = 20 },
+  { length = 10, diameter = 20, connection = "right" },
+]
+[lug_defaults]
+edge_radius = 0.5
+tilt = "guided"
+[pin.P.lug.middle]
+clearance = 0.08
+[case.heavy]
+kind = "given"
+forces = { left = [0, 15000], middle = [0, -30000], right = [0, 15000] }
+[case.light]
+kind = "given"
+forces = { left = [0, 150], middle = [0, -300], right = [0, 150] }
+"""
 
 
 def point(value: float, factor: float | None, pin: str = "P", case: str = "c") -> CurvePoint:
@@ -173,6 +205,24 @@ def test_points_are_those_of_runs(tmp_path: Path) -> None:
         assert p.error_estimate == pytest.approx(row.error_estimate, rel=1e-9)
         assert p.safety_factor == pytest.approx(row.safety_factor, rel=1e-9)
         assert (p.outcome, p.verdict) == (row.outcome, row.verdict)
+
+
+@pytest.mark.slow
+def test_a_light_case_of_a_loose_pin_is_only_decided_as_in_a_run() -> None:
+    """On the narrow arcs of a light case, finer and finer cells took most of the time. A strength
+    changes no stress: its points share one solution, whose light case is then solved finely.
+    """
+    study = study_from(LOOSE)
+    clearance, strength = "pin.P.lug.middle.clearance", "material.steel.yield_strength"
+    for point in curve(study, clearance, (0.08, 0.1), points=2).points:
+        row = pinstress.run(changed_study(study, {clearance: point.value}))[point.pin, point.case]
+        assert point.max_von_mises == pytest.approx(row.max_von_mises, rel=1e-9)
+        assert point.error_estimate == pytest.approx(row.error_estimate, rel=1e-9)
+    run = pinstress.run(study)
+    light = [x for x in curve(study, strength, points=3).points if x.case == "light"]
+    assert len({x.max_von_mises for x in light}) == 1
+    rough = run["P", "light"].error_estimate or 0.0
+    assert (light[0].error_estimate or 0.0) < 0.5 * rough
 
 
 def test_the_command_writes_table_and_picture_and_says_where_the_factor_is_reached(
