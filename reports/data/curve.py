@@ -10,6 +10,7 @@ from assess.judgement import OUTCOME_ORDER
 from pinbase.grouped import grouped
 
 CURVE_NAME = "curve"
+MAX_POWER_RATIO = 5.0  # of neighbouring values between which a factor is taken as a power
 AS_DESCRIBED = "as described"  # follows an outcome where only a run finds the range over the joint
 
 
@@ -138,7 +139,8 @@ class FactorCurve:
     def reached(self) -> tuple[Crossing, ...]:
         """The values at which pins pass the required factor.
 
-        The logarithm of the factor is interpolated linearly between neighbouring values.
+        The logarithm of the factor is interpolated linearly between neighbouring values: over their
+        logarithms, as a power of the number, unless one value is many times the other.
         """
         out = []
         for pin in self.pins if self.required else ():
@@ -150,6 +152,13 @@ class FactorCurve:
                 if (low < 0.0) == (high < 0.0):
                     continue
                 share = low / (low - high)
-                value = left.value + share * (right.value - left.value)
+                value = _between(left.value, right.value, share)
                 out.append(Crossing(pin, (left.value, right.value), value, high > low))
         return tuple(out)
+
+
+def _between(left: float, right: float, share: float) -> float:
+    """Return the value at a share of the way from one value to another."""
+    if left > 0.0 and right <= MAX_POWER_RATIO * left:
+        return float(left * (right / left) ** share)
+    return left + share * (right - left)

@@ -75,9 +75,9 @@ def test_the_value_of_the_study_is_one_of_the_points_once(nominal: float, count:
 @each(
     ("factors", "expected"),
     [
-        ((5.0, 20.0), [(1.5, True)]),  # half way between the logarithms
-        ((40.0, 2.5), [(1.5, False)]),
-        ((5.0, 20.0, 20.0, 5.0), [(1.5, True), (3.5, False)]),
+        ((5.0, 20.0), [(math.sqrt(2.0), True)]),  # half way between the logarithms
+        ((40.0, 2.5), [(math.sqrt(2.0), False)]),
+        ((5.0, 20.0, 20.0, 5.0), [(math.sqrt(2.0), True), (math.sqrt(12.0), False)]),
         ((11.0, 12.0), []),
         ((5.0, None, 20.0), []),  # nothing is known between
         ((10.0, 5.0), [(1.0, False)]),
@@ -90,6 +90,18 @@ def test_where_the_required_factor_is_reached(
     reached = [(r.value, r.rising) for r in of(*points).reached]
     assert [rising for _, rising in reached] == [rising for _, rising in expected]
     assert [value for value, _ in reached] == pytest.approx([value for value, _ in expected])
+
+
+def test_a_factor_between_two_values_is_a_power_of_the_number_unless_one_is_near_zero() -> None:
+    """Bending of a pin goes with the cube of its diameter: over the diameter itself 10 would be
+    reached at 1.4 in instead of 1.25. Of a clearance from almost nothing no power is known.
+    """
+    cubic = of(point(1.0, 10.0 / 1.25**3), point(2.0, 10.0 * (2.0 / 1.25) ** 3))
+    assert [r.value for r in cubic.reached] == pytest.approx([1.25])
+    loose = of(point(1e-6, 20.0), point(0.1, 5.0))
+    assert [r.value for r in loose.reached] == pytest.approx([0.05], rel=1e-4)
+    below = of(point(-20.0, 20.0), point(80.0, 5.0))  # a temperature
+    assert [r.value for r in below.reached] == pytest.approx([30.0])
 
 
 def test_the_case_that_counts_is_the_worst_or_one_of_which_nothing_is_known() -> None:
