@@ -59,18 +59,18 @@ def curve(
     # A strength changes no stress, which all points share if it is known in every case.
     evaluator = Evaluator(study, [number], pins, every=number.path[-1] in STRENGTH_KEYS)
     values = values_between(low, high, number.nominal, points)
-    # Neighbouring values share the most data, so each process takes one part of the range.
-    parts = np.array_split(values, min(jobs, len(values)))
+    # Each process takes values from the whole range, since those at one end may take far longer.
+    parts = [values[k::jobs] for k in range(min(jobs, len(values)))]
     work = [Job(key, partial(_solved, evaluator, part)) for part in parts]
     outcomes = in_parallel(work, jobs, progress)
     require_unchanged(study, before)
-    solved: list[CurvePoint] = []
-    for part, rows in zip(parts, outcomes, strict=True):
-        if isinstance(rows, ProcessDied):
-            failed = rows_without_maximum(evaluator.table, rows.reason, PROCESS_DIED)
-            rows = [failed for _ in part]
-        for value, design in zip(part, rows, strict=True):
-            solved += [_point(study, number, float(value), row) for row in design]
+    rows: dict[float, list[DesignRow]] = {}
+    for part, designs in zip(parts, outcomes, strict=True):
+        if isinstance(designs, ProcessDied):
+            failed = rows_without_maximum(evaluator.table, designs.reason, PROCESS_DIED)
+            designs = [failed for _ in part]
+        rows |= dict(zip(part.tolist(), designs, strict=True))
+    solved = [_point(study, number, x, row) for x in values.tolist() for row in rows[x]]
     names = tuple(dict.fromkeys(row.pin for row in solved))
     required = None if _is_required(number) else common_required_factor(study, names)
     return FactorCurve(

@@ -210,6 +210,7 @@ def test_points_are_those_of_runs(tmp_path: Path) -> None:
     """Each is what `run` says about the study with that number; the one in the study is added."""
     study = pinstress.load_study(_study(tmp_path))
     points = curve(study, DIAMETER, ("1.6 in", 2.4), points=2).points
+    assert curve(study, DIAMETER, ("1.6 in", 2.4), points=2, jobs=2).points == points
     assert [p.value for p in points] == pytest.approx([1.6, 2.0, 2.4])
     for p in points:
         (row,) = pinstress.run(changed_study(study, {DIAMETER: p.value})).pins
