@@ -37,7 +37,10 @@ def curve_plot(curve: FactorCurve) -> Plot:
                          "color": key}}  # fmt: skip
     lines = {"mark": {"type": "line", "point": {"size": 40, "filled": True}},
              "encoding": {"y": y, "color": key, "tooltip": tooltip}}  # fmt: skip
-    levels = [] if curve.required is None else [level(curve.required, "required")]
+    # Texts point away from the nearer end and from each other.
+    late = curve.nominal > 0.5 * sum(f([p.value for p in curve.points]) for f in (min, max))
+    required = curve.required
+    levels = [] if required is None else [level(required, "required", right=not late)]
     spec: Spec = {
         "title": headed(f"factor of safety against {clipped(curve.key, 60)}"),
         "usermeta": {"columns": [f"{curve.key}{unit}", "factor of safety"]},
@@ -45,7 +48,7 @@ def curve_plot(curve: FactorCurve) -> Plot:
         "width": 420,
         "height": 260,
         "encoding": {"x": x},
-        "layer": [*levels, instant(curve.nominal, "study"), bars, lines],
+        "layer": [*levels, instant(curve.nominal, "study", late), bars, lines],
     }
     caption = f"Factor of safety against {curve.key}; bars: numerical error."
     return Plot(CURVE_NAME, caption, spec)

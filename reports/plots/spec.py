@@ -282,13 +282,13 @@ def _rounded(value: object) -> object:
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
-def level(y: float, text: str = "", style: str = "level") -> Spec:
-    """Return a horizontal line, with a text at its left end."""
+def level(y: float, text: str = "", style: str = "level", right: bool = False) -> Spec:
+    """Return a horizontal line, with a text at its left end, or its right one."""
     rule: Spec = {"mark": {"type": "rule", "style": style}, "encoding": {"x": None}}
     noted: Spec = {
-        "mark": {"type": "text", "style": "quiet-note", "align": "left", "dx": 3, "dy": -6,
-                 "text": text},
-        "encoding": {"x": {"value": 0}},
+        "mark": {"type": "text", "style": "quiet-note", "align": "right" if right else "left",
+                 "dx": -3 if right else 3, "dy": -6, "text": text},
+        "encoding": {"x": {"value": "width" if right else 0}},
     }  # fmt: skip
     return {
         "data": rows([{}]),
