@@ -17,42 +17,13 @@ from pinstress.study.reading.in_python import changed_study, study_from
 from reports.data.curve import CurvePoint, FactorCurve
 from reports.tables.curve import worst_table
 from reports.text.curve import reached_lines
+from tests.pinstress.analysis.test_scaled import STUDY, TWO_CASES
 from tests.support.each import each
 from tests.support.programs.command_line import ONE_PIN
 
 DIAMETER = "pin.B.profile[2].diameter"
-LOOSE = """
-title = "A pin in a loose lug, under a heavy and a light load"
-units = "mm-N-s"
-[analysis]
-joints = "contact"
-required_safety_factor = 2
-limit_load = "never"
-[material.steel]
-youngs_modulus = "205 GPa"
-poisson_ratio = 0.3
-yield_strength = "600 MPa"
-[pin.P]
-material = "steel"
-profile = [
-  { length = 10, diameter = 20, connection = "left" },
-  { length = 1, diameter = 20 },
-  { length = 20, diameter = 20, connection = "middle" },
-  { length = 1, diameter = 20 },
-  { length = 10, diameter = 20, connection = "right" },
-]
-[lug_defaults]
-edge_radius = 0.5
-tilt = "guided"
-[pin.P.lug.middle]
-clearance = 0.08
-[case.heavy]
-kind = "given"
-forces = { left = [0, 15000], middle = [0, -30000], right = [0, 15000] }
-[case.light]
-kind = "given"
-forces = { left = [0, 150], middle = [0, -300], right = [0, 150] }
-"""
+LUG = "[pin.P.lug.middle]"
+LOOSE = STUDY.replace(LUG, f"{LUG}\nclearance = 0.08") + TWO_CASES  # a heavy and a light load
 
 
 def point(value: float, factor: float | None, pin: str = "P", case: str = "c") -> CurvePoint:
