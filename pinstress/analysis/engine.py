@@ -270,12 +270,13 @@ class Engine:
         """The outcome of a task in some of whose cases contact has moved; only the others are
         scaled.
         """
-        rows = [self._on_usual_cells(plan, task.of_case(x)) for x in task.loads if x.case in moved]
+        rows = list[PinResult]()
         if still := tuple(x for x in task.loads if x.case not in moved):
             scaled = self._scaled(plan, replace(task, loads=still))
             if scaled is None:
                 return None
             rows += scaled.rows
+        rows += (self._on_usual_cells(plan, task.of_case(x)) for x in task.loads if x.case in moved)
         order = [x.case for x in task.loads]
         return PinOutcome(tuple(sorted(rows, key=lambda x: order.index(x.case))))
 
