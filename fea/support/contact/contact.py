@@ -14,9 +14,9 @@ This is a linear complementarity problem with a positive definite matrix. A prim
 solves it in few steps. Where the cells in contact leave the pin or a lug free to move, as one line
 of cells does across the line, it moves until the next cells touch. The active set may cycle where
 barely more cells touch than are needed to hold the pin; then a descent of the energy finds the
-cells (fea.support.contact.least_energy). As
-long as the same cells are in contact, everything is linear in the loads. The response of each set
-of cells is therefore computed once and kept, so that neighbouring instants cost almost nothing.
+cells (fea.support.contact.least_energy). As long as the same cells are in contact, everything is
+linear in the loads. The response of each set of cells is therefore computed once and kept, so that
+neighbouring instants cost almost nothing.
 
 Sources: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13 (2002) 865 (the active set); Ciavarella &
 Decuzzi, Int. J. Solids Struct. 38 (2001) 4507 (the plane problem that tests compare with).

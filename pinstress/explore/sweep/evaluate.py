@@ -1,9 +1,10 @@
 """The results of a study with changed numbers: a row for each of its pins in each of its cases.
 
-A design is solved as in a run, so `pinstress run` of the changed study finds the same rows. Parts
-that do not change from one design to the next are not solved again: loads that do not depend on a
-changed number, pins whose shape, material and loads are those of an earlier design, and the unit
-loads of a pin of which only loads or strength change.
+A design is solved as in a run, so `pinstress run` of the changed study finds the same rows, but for
+minor cases of pins in lugs, unless these are only to be decided here, too. Parts that do not change
+from one design to the next are not solved again: loads that do not depend on a changed number, pins
+whose shape, material and loads are those of an earlier design, and the unit loads of a pin of which
+only loads or strength change.
 """
 
 from __future__ import annotations
