@@ -24,6 +24,7 @@ from fea.core.solution import StressPoints
 from fea.core.voigt import von_mises
 from fea.support.support import Solution
 from pinbase.arrays import Floats, Ints
+from pinbase.rounding import without_round_off
 
 # The search is first coarse, then fine at the maxima found. These values are chosen by judgement.
 SEARCH_ANGLES, FINAL_ANGLES = 16, 72  # angles about the axis
@@ -111,8 +112,12 @@ def _places(cases: Sequence[_Case]) -> list[_Place]:
 
 
 def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
-    """Yield the place of the largest von Mises stress of the surface, for each case with stress."""
-    for case in cases:
+    """Yield the place of the largest von Mises stress of the surface, for each case with stress.
+
+    The largest first, whatever the order of the cases: of places that nearly coincide, the one with
+    the larger stress is assessed.
+    """
+    for case in sorted(cases, key=_by_surface_stress):
         peak = case.solution.peak
         at = peak.location if peak.places is None else peak.places.surface.location
         text = f"largest von Mises stress, {peak.case}"
@@ -123,6 +128,13 @@ def _governing(cases: Sequence[_Case]) -> Iterator[_Place]:
             yield _Place(np.array([np.hypot(x, y), 0.0, z]), float(np.arctan2(y, x)), text)
         else:
             yield _Place(np.array(at), 0.0, text)
+
+
+def _by_surface_stress(case: _Case) -> tuple[float, str]:
+    """Return what sorts cases by their largest stress of the surface, then by their names."""
+    peak = case.solution.peak
+    surface = peak if peak.places is None else peak.places.surface
+    return -without_round_off(surface.max_von_mises or 0.0), peak.case
 
 
 def _local_maxima(cases: Sequence[_Case]) -> Iterator[_Place]:
