@@ -9,7 +9,7 @@ from urllib.parse import quote
 
 import click
 
-from pinstress.cli.new_file import require_new, write_new
+from pinstress.cli.new_file import require_new, write_new, write_over
 from pinstress.cli.shared import QUIET_OPTION, example, read_study, say
 from pinstress.study.reading.choices import ChoiceError
 from pinstress.study.reading.errors import InputError, cannot_write
@@ -62,8 +62,8 @@ def export(
     except ChoiceError as error:  # its text begins with an option, but here it is an argument
         raise InputError(str(error).partition(": ")[2], code=error.code) from None
     content = "".join(f"{line}\n" for line in lines).encode("ascii")
-    if force and path.exists():
-        _replace(path, content)
+    if force:
+        write_over(path, content)
     else:
         write_new(path, content, OVERWRITE_REMEDY)
     click.echo(f"Written: {path}")
@@ -89,18 +89,4 @@ def _require_writable(path: Path, force: bool, make_folder: bool) -> None:
         if not os.access(path.parent, os.W_OK):
             raise PermissionError(13, "Permission denied")
     except OSError as error:
-        raise cannot_write(path, error) from None
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Replace a file in one step.
-
-    Raises: InputError if the file cannot be written.
-    """
-    staging = path.with_name(f"{path.name}.part")
-    write_new(staging, content, "remove it")
-    try:
-        staging.replace(path)
-    except OSError as error:
-        staging.unlink()
         raise cannot_write(path, error) from None

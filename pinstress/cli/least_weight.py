@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from contextlib import closing
+from contextlib import closing, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -15,6 +15,7 @@ import click
 
 from assess.judgement import FAILS, NOT_DECIDED
 from pinbase.keys import key_part
+from pinbase.processes import interrupts
 from pinbase.processes.pool import processes
 from pinstress.cli.new_file import write_new
 from pinstress.cli.run import console, progress_bar
@@ -107,7 +108,7 @@ def lighten_and_write(
 
     Raises: InputError.
     """
-    target = target_of(study, out)
+    target = target_of(study, out, new=not resume)
     asked = identity(study, (aim, probability), pins or study.table.pin)
     with closing(SizeState[FinishedSearch](target, asked, FinishedSearches)) as state:
         if resume:
@@ -122,9 +123,12 @@ def lighten_and_write(
                     if probability is None
                     else lighten_at(study, aim, probability, pins, processes(jobs), progress, log)
                 )
-            status = _write(study, design, aim, target, quiet, probability)
-        state.end()
-    return status
+            changed = _write(study, design, target, resume)
+        with interrupts.deferred():
+            state.end()
+            if changed:
+                interrupts.state_left(f"{target} is written")
+    return _report(study, design, aim, target if changed else None, quiet, probability)
 
 
 def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> int:
@@ -134,23 +138,38 @@ def _kept(state: SizeState[FinishedSearch], log: SearchLog) -> int:
     return len(log)
 
 
-def _write(
+def _write(study: Study, design: LightStudy, target: Path, resume: bool) -> bool:
+    """Write the new study, and return whether it differs from the old one.
+
+    resume: whether the interrupted command may have written it already.
+
+    Raises: InputError.
+    """
+    if design.study.text == study.text or not any(x.values or x.scale for x in design.pins):
+        return False
+    content = moved(design.study.text, study.path.parent, target.parent).encode()
+    if not (resume and target.is_file() and target.read_bytes() == content):
+        write_new(target, content, OTHER_FILE_REMEDY)
+    return True
+
+
+def _report(
     study: Study,
     design: LightStudy,
     aim: WeightGoal,
-    target: Path,
+    target: Path | None,
     quiet: bool,
     probability: float | None,
 ) -> int:
-    """Write the new study, print the dimensions, and return the exit status."""
+    """Print the dimensions and return the exit status.
+
+    target: the new study, if it was written.
+    """
     heavy = all(study.material_of(lightest.pin).density for lightest in design.pins)
     rows = [_row(study, design, lightest, aim, heavy) for lightest in design.pins]
-    if changed := design.study.text != study.text and any(x.values or x.scale for x in design.pins):
-        text = moved(design.study.text, study.path.parent, target.parent)
-        write_new(target, text.encode(), OTHER_FILE_REMEDY)
     system = study.system
     unit = system.force if heavy else f"{system.length}³"
-    with unneeded(target):
+    with unneeded(target) if target else nullcontext():
         print_light(rows, aim.written, (system.length, unit, heavy), console())
         if probability is not None:
             factor = "A required factor" if aim.multiples else f"The factor {short(aim.required)}"
@@ -159,7 +178,7 @@ def _write(
                 "order; pinstress reliability samples it."
             )
     if not quiet:
-        close(study, design.study, target if changed else None)
+        close(study, design.study, target)
     if not design.settled:
         say(
             "Not settled: the factors in the run of the new study are not yet those that were "

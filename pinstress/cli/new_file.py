@@ -6,11 +6,9 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
 
+from pinbase.files import create_file, replace_file
 from pinstress.study.reading.errors import InputError, cannot_write
 
 JUNIT_HEAD_SIZE = 4096  # bytes at the start of a file in which JUnit results are recognised
@@ -33,28 +31,22 @@ def write_new(path: Path, content: bytes, remedy: str) -> None:
     Raises: InputError if the file exists or cannot be written.
     """
     try:
-        with _created(path) as file:
-            file.write(content)
+        create_file(path, content)
     except FileExistsError:
         raise InputError(f"{path} exists already; {remedy}", code="exists") from None
     except OSError as error:
         raise cannot_write(path, error) from None
 
 
-@contextmanager
-def _created(path: Path) -> Iterator[BinaryIO]:
-    """Create a file, and remove it if the block ends with an error.
+def write_over(path: Path, content: bytes) -> None:
+    """Write a file, replacing one that exists.
 
-    Raises: OSError.
+    Raises: InputError if the file cannot be written.
     """
-    file = path.open("xb")  # does not follow links
     try:
-        with file:
-            yield file
-    except BaseException:
-        with suppress(OSError):
-            path.unlink()
-        raise
+        replace_file(path, content)
+    except OSError as error:
+        raise cannot_write(path, error) from None
 
 
 def file_start(path: Path, option: str, size: int) -> bytes:

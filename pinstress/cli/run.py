@@ -31,7 +31,7 @@ from pinstress.cli.closing import (
     report_unchecked,
     report_violations,
 )
-from pinstress.cli.new_file import require_junit
+from pinstress.cli.new_file import require_junit, write_over
 from pinstress.cli.output_folder import replacing, require_replaceable
 from pinstress.cli.plots import draw_and_print
 from pinstress.cli.shared import open_page, say, warn
@@ -148,9 +148,7 @@ def run_and_write(
             progress("report", 1.0)
             _write(results, staging, most)
     if junit is not None:
-        from pinstress.explore.size.size_state import replace_file  # imports solvers
-
-        replace_file(junit, junit_xml(results))
+        write_over(junit, junit_xml(results))
     if cache:
         cache.trim()
     _print_results(results, directory, study, wanted)

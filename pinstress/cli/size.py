@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING
 
 from assess.judgement import NOT_DECIDED
 from pinbase.grouped import grouped
+from pinbase.processes import interrupts
 from pinbase.processes.pool import preload, processes
 from pinstress.analysis.gather.gather import units_of
 from pinstress.analysis.plan import Plan, prepare
-from pinstress.cli.new_file import require_new
+from pinstress.cli.new_file import require_new, write_over
 from pinstress.cli.run import RUN_LIBRARIES, RUN_MODELS, console, progress_bar
 from pinstress.cli.shared import connected, resumable, say
 from pinstress.cli.streams import unneeded
 from pinstress.explore.size.scaled_study import moved
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult
 from pinstress.explore.size.size_pins import new_study, size_pins
-from pinstress.explore.size.size_state import FinishedPins, SizeState, identity, replace_file
+from pinstress.explore.size.size_state import FinishedPins, SizeState, identity
 from pinstress.explore.size.standard_diameters import standard_diameters
 from pinstress.study.model.pins import pin as pin_of
 from pinstress.study.model.pins import slenderness, weight
@@ -163,13 +164,16 @@ class _Sizing:
         ):
             if not self.written:
                 require_new(self._target, OTHER_FILE_REMEDY)
-            replace_file(self._target, self._text(sized))
+            write_over(self._target, self._text(sized))
             self.written = True
         return new
 
     def end(self) -> None:
         """Remove the saved state, which the new study contains."""
-        self._state.end()
+        with interrupts.deferred():
+            self._state.end()
+            if self.written:
+                interrupts.state_left(f"{self._target} is written")
 
     def stop(self) -> int:
         """Return the number of finished pins; without any, remove the saved state."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pinbase.processes import interrupts
 from pinbase.processes.folder_lock import Release, lock
 from pinbase.processes.pool import cores
 from pinstress.cli import manifest
@@ -86,6 +87,7 @@ def sweep_and_write(
     if options.resume and parts.finished:
         if not options.quiet:
             say(f"The sweep in {directory} is complete: nothing to do.")
+        interrupts.state_left(f"{directory} is written")
         return _report_designs(directory, read_table(directory / DESIGNS_FILE), options)
     kept = resumable(lambda: parts.count, "batch", "batches")
     with _claimed(directory, parts, options.resume), kept, _writing(directory):
@@ -99,7 +101,9 @@ def sweep_and_write(
         with progress(options.quiet, alone) as report:
             table = solved(sweep, parts, options.jobs, options.connection, report, warn)
         _write(directory, table)
-        parts.finish()
+        with interrupts.deferred():
+            parts.finish()
+            interrupts.state_left(f"{directory} is written")
     return _report_designs(directory, table, options)
 
 

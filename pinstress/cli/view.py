@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from pinbase.processes.apart import apart
 from pinbase.processes.pool import preload
-from pinstress.cli.new_file import require_new, write_new
+from pinstress.cli.new_file import require_new, write_new, write_over
 from pinstress.cli.plots import PICTURE_MODULES, PICTURE_SECONDS, lacking
 from pinstress.cli.shared import say
 from pinstress.study.reading.errors import InputError
@@ -74,28 +74,24 @@ def view(
         if drawn is not None:
             say(f"Error: {screenshot} could not be drawn: {drawn.reason}")
             return 1
-        if force and os.path.lexists(screenshot):
-            _remove(screenshot)
-        write_new(screenshot, picture.read_bytes(), OVERWRITE_REMEDY)
+        if force:
+            _require_replaceable(screenshot)
+            write_over(screenshot, picture.read_bytes())
+        else:
+            write_new(screenshot, picture.read_bytes(), OVERWRITE_REMEDY)
     return 0
 
 
-def _remove(path: Path) -> None:
-    """Remove a file or link.
+def _require_replaceable(path: Path) -> None:
+    """Check that a picture may take the place of what is at `path`: a file, a link or nothing.
 
     Raises: InputError for anything else.
     """
-    if not (path.is_file() or path.is_symlink()):
+    if os.path.lexists(path) and not (path.is_file() or path.is_symlink()):
         raise InputError(
             f"--screenshot {path} is not a regular file and cannot be overwritten; choose another",
             code="not-a-file",
         )
-    try:
-        path.unlink()
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be overwritten ({error.strerror})", code="cannot-write"
-        ) from None
 
 
 def opened_results(directory: Path) -> Opened:

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from pinbase.files import partial_file, replace_file
 from pinbase.processes.folder_lock import Release, lock
 from pinbase.records import pack, unpack
 from pinstress.analysis.cache import program
@@ -73,7 +74,7 @@ class SizeState(Generic[T]):
     def exists(self) -> bool:
         """Whether a `size` has begun there; an empty folder is left by one killed before that."""
         try:
-            written = {*os.listdir(self.path)} - {_partial(self._pins).name}
+            written = {*os.listdir(self.path)} - {partial_file(self._pins).name}
             return self.path.is_symlink() or bool(written)
         except (NotADirectoryError, PermissionError):
             return True
@@ -159,14 +160,14 @@ class SizeState(Generic[T]):
         """
         content = pack(self._kind(self._identity, done))
         try:
-            _replace(self._pins, content)
+            replace_file(self._pins, content)
         except OSError as error:
             raise self._cannot_write(error) from None
 
     def _cannot_write(self, error: OSError) -> InputError:
         """Return the error that names the user's file, since the user has not named the folder."""
         refused = cannot_write(self._target, error)
-        text = f"{refused}; pins that are done are kept beside it, in {self.path.name}"
+        text = f"{refused}; pins that are done would be kept beside it, in {self.path.name}"
         return InputError(text, code=refused.code)
 
     def end(self) -> None:
@@ -180,34 +181,3 @@ class SizeState(Generic[T]):
         if self._release is not None:
             self._release()
             self._release = None
-
-
-def replace_file(path: Path, content: bytes) -> None:
-    """Write a file in one step.
-
-    Raises: InputError if the file cannot be written.
-    """
-    try:
-        _replace(path, content)
-    except OSError as error:
-        raise cannot_write(path, error) from None
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Write a file in one step.
-
-    Raises: OSError.
-    """
-    partial = _partial(path)
-    try:
-        partial.write_bytes(content)
-        os.replace(partial, path)
-    except BaseException:
-        with suppress(OSError):  # for example a name that is too long
-            partial.unlink(missing_ok=True)
-        raise
-
-
-def _partial(path: Path) -> Path:
-    """Return the temporary file in which a file is written; a killed process leaves it behind."""
-    return path.with_name(f".{path.name}.partial")

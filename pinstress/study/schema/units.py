@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import re
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from pathlib import Path
@@ -337,7 +338,11 @@ def _by_pint(unit: str, dimension: str, text: str) -> float:
     except pint.UndefinedUnitError as error:
         names: Any = error.unit_names
         unknown = str(names if isinstance(names, str) else names[0])
-        near = near or nearest(unknown, [*_symbols(), *map(str, _registry())])
+        near = (
+            near
+            or _powered(unit, dimension)
+            or nearest(unknown, [*_symbols(), *map(str, _registry())])
+        )
         what, code = f"unknown unit {as_text(unknown)} in {as_text(text)}", "unknown-unit"
     except pint.DimensionalityError:
         what, code = f"{as_text(text)} is not {_a(dimension)}", "wrong-dimension"
@@ -354,6 +359,15 @@ def _meant(unit: str, dimension: str) -> str | None:
     """
     spelled = {_bare(usual): usual for usual, (of, _) in USUAL_UNITS.items() if of == dimension}
     return spelled.get(_bare(unit))
+
+
+def _powered(unit: str, dimension: str) -> str | None:
+    """Return a unit with signs of powers before its digits, if that is one of the dimension."""
+    powered = re.sub(r"(?<=[^\W\d])(?=\d)", "^", unit)
+    with suppress(Exception):  # as in _by_pint
+        if _registry().Quantity(1.0, powered).check(_expected(dimension)):
+            return powered
+    return None
 
 
 def _bare(unit: str) -> str:

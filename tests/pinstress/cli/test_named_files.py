@@ -9,8 +9,8 @@ from threading import Thread
 
 import pytest
 
+from pinbase.files import replace_file
 from pinstress.cli.new_file import require_junit
-from pinstress.explore.size.size_state import replace_file
 from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 

@@ -24,6 +24,7 @@ from pinstress.study.reading.errors import InputError
 from pinstress.study.reading.file import load_study
 from reports.data.decision import factor_ends
 from tests.conftest import ROOT
+from tests.support.each import each
 from tests.support.programs.command_line import QUICK, run_here
 from tests.support.programs.process_group import started
 from tests.support.programs.signals import signals_heard
@@ -139,6 +140,48 @@ def test_an_interrupted_search_of_the_lightest_pins_goes_on(
     assert resumed.stdout == whole.stdout
 
 
+@each(
+    ("option", "printed"),
+    [([], "pinstress.cli.size.print_sizes"),
+     (["--least-weight"], "pinstress.cli.least_weight.print_light")],
+)  # fmt: skip
+def test_an_interrupt_after_the_study_is_written_leaves_nothing_to_resume(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, option: list[str], printed: str
+) -> None:
+    """It was said that nothing was written, or that searches are kept for --resume."""
+    (tmp_path / "study.toml").write_text(QUICK)
+    monkeypatch.setattr(printed, lambda *_: signal.raise_signal(signal.SIGINT))
+    with signals_heard():
+        stopped = run_here("size", "study.toml", *option, "--jobs", "1", cwd=tmp_path)
+    assert (stopped.returncode, stopped.stderr.splitlines()[-1]) == (
+        130,
+        "Interrupted; study_sized.toml is written.",
+    )
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml", "study_sized.toml"]
+
+
+def test_a_search_that_was_killed_after_it_wrote_the_study_is_resumed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Unless the new study was edited, which is then kept."""
+    (tmp_path / "study.toml").write_text(QUICK)
+    target = tmp_path / "study_sized.toml"
+    command = "size", "study.toml", "--least-weight", "--jobs", "1"
+    with monkeypatch.context() as killed:
+        killed.setattr(SizeState, "end", lambda _: None)
+        assert run_here(*command, cwd=tmp_path).returncode == 0
+    new = target.read_text()
+    target.write_text(new + "# mine\n")
+    refused = run_here(*command, "--resume", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "study_sized.toml exists already" in refused.stderr
+    target.write_text(new)
+    resumed = run_here(*command, "--resume", cwd=tmp_path)
+    assert resumed.returncode == 0, resumed.stderr
+    assert target.read_text() == new
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["study.toml", "study_sized.toml"]
+
+
 def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
     (tmp_path / "study.toml").write_text(several("B"))
     nothing = run_here("size", "study.toml", "--resume", cwd=tmp_path)
@@ -183,7 +226,7 @@ def test_a_file_that_cannot_be_written_is_named_as_it_was_given(tmp_path: Path) 
     made = run_here("size", "study.toml", "--fos", "1.5", "--out", name, cwd=tmp_path)
     assert made.returncode == 2
     assert made.stderr == (
-        f"Error: {name}: cannot be written (File name too long); pins that are done are kept "
+        f"Error: {name}: cannot be written (File name too long); pins that are done would be kept "
         f"beside it, in {name}.unfinished\n"
     )
     assert [p.name for p in tmp_path.iterdir()] == ["study.toml"]

@@ -24,6 +24,7 @@ from pinstress.explore.sweep.table import table_of
 from tests.support.each import each, sampled
 from tests.support.programs.command_line import QUICK, pinstress, run_here
 from tests.support.programs.process_group import started
+from tests.support.programs.signals import signals_heard
 from tests.support.programs.swept import DIAMETER, FORCE, LONG_SWEEP, ONE_PIN, varied
 from tests.support.study_text import study_file
 
@@ -51,6 +52,24 @@ def test_a_sweep_writes_its_table_and_says_what_is_in_it(tmp_path: Path) -> None
     again = run_here("sweep", "study.toml", "--jobs", "1", "--quiet", cwd=tmp_path)
     assert (again.returncode, again.stderr) == (0, "")
     assert (out / "designs.parquet").read_bytes() == first
+
+
+def test_an_interrupt_after_the_table_is_written_leaves_nothing_to_resume(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It was said that nothing was written."""
+    _study(tmp_path, count=2)
+
+    def interrupted(*_: object) -> None:
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr("pinstress.cli.sweep.summary", interrupted)
+    for _ in "while it ends", "when it is complete":
+        with signals_heard():
+            options = ["--resume"] if (tmp_path / "out").exists() else []
+            stopped = run_here("sweep", "study.toml", "--jobs", "1", *options, cwd=tmp_path)
+        assert stopped.returncode == 130
+        assert "Interrupted; out/study-sweep is written." in stopped.stderr
 
 
 def test_designs_that_all_fail_are_told(tmp_path: Path) -> None:

@@ -109,6 +109,8 @@ LANDING = "case.landing"
         ("one_pin", 'clamp = ["start"]', 'clamp = "start"', "not-a-list", "pin.B.clamp", "[a, b"),
         ("one_pin", '"225 ksi"', '"225 Ksi"', "unknown-unit",
          'material."AISI 4340".yield_strength', "did you mean 'ksi'?"),
+        ("one_pin", '"225 ksi"', '"195 kN/mm2"', "unknown-unit",
+         'material."AISI 4340".yield_strength', "did you mean 'kN/mm^2'?"),
         ("one_pin", '"225 ksi"', '"650 Mpa"', "unknown-unit",
          'material."AISI 4340".yield_strength', "did you mean 'MPa'?"),
         ("one_pin", '"0.2836 lb/in^3"', '"7850 kg/m3"', "unknown-unit",
