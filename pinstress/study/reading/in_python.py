@@ -206,6 +206,8 @@ def _place(study: Study, table: Any, parts: list[str | int], key: str, split: bo
     if isinstance(parts[-1], int):
         table = _unwrapped(table)
         _inside(study, table, parts[-1], key)  # raises unless the element exists
+    elif not isinstance(table, Mapping):
+        _inside(study, table, parts[-1], key)  # raises
     return table
 
 
@@ -258,7 +260,7 @@ def written_parts(content: Any, parts: Iterable[str | int]) -> list[str | int]:
     """Return the parts of a key as the content of a study needs them.
 
     The index of a list of one element may be left out, and [1] may follow a table where a list
-    could be.
+    could be. The "value" of a table { value, provenance } is that which the table stands for.
     """
     written: list[str | int] = []
     here = _unwrapped(content)
@@ -267,6 +269,8 @@ def written_parts(content: Any, parts: Iterable[str | int]) -> list[str | int]:
             written.append(0)
             here = _unwrapped(here[0])
         if part == 0 and isinstance(here, Mapping):
+            continue
+        if part == "value" and isinstance(here, int | float | str | list):
             continue
         written.append(part)
         try:
