@@ -58,9 +58,13 @@ class Away:
         self.pressed, self._known = pressed, dict[int, NDArray[np.int16]]()
         near = arcs_within(points, pressed.rings, 2.0 * BENEATH_DISTANCE * pressed.rings.radius)
         some = (near >= 0).any(axis=1)
-        self._near = near[some].astype(np.int16)  # a quarter of the memory to read
         self._row = np.full(len(points), -1)
         self._row[some] = np.arange(some.sum())
+        # Of each point the rings that may be near, those with most arcs first. int16 takes a
+        # quarter of the memory to read.
+        most = int((near >= 0).sum(axis=1).max(initial=0))
+        self._rings = np.argsort(-near[some], axis=1, kind="stable")[:, :most]
+        self._near = np.take_along_axis(near[some], self._rings, axis=1).astype(np.int16)
 
     def masked(self, points: Ints) -> Mask:
         """A mask (J,) of the points (J,) that are read on part of the circumference only."""
@@ -68,16 +72,22 @@ class Away:
 
     def read(self, points: Ints, instants: Ints) -> Mask:
         """The arcs (J, ARC_COUNT) on which pairs of points and instants are read."""
-        out, rows = np.ones((len(points), ARC_COUNT), dtype=bool), self._row[points]
-        for t in np.unique(instants).tolist():
-            if t not in self._known:
-                self._known[t] = arcs_apart(self.pressed.on[t]).astype(np.int16)
-            here = np.flatnonzero((instants == t) & (rows >= 0))
-            near = self._near[rows[here]]
-            for ring in np.flatnonzero((near >= 0).any(axis=0)):
-                some = np.flatnonzero(near[:, ring] >= 0)
-                out[here[some]] &= self._known[t][ring] > near[some, ring, None]
+        out, pairs = (
+            np.ones((len(points), ARC_COUNT), dtype=bool),
+            np.flatnonzero(self.masked(points)),
+        )
+        rows, (now, turn) = self._row[points[pairs]], np.unique(instants, return_inverse=True)
+        apart, turn = np.stack([self._apart(t) for t in now.tolist()]), turn[pairs]
+        for rings, near in zip(self._rings[rows].T, self._near[rows].T, strict=True):
+            here = np.flatnonzero(near >= 0)
+            out[pairs[here]] &= apart[turn[here], rings[here]] > near[here, None]
         return out
+
+    def _apart(self, instant: int) -> NDArray[np.int16]:
+        """The arcs (R, ARC_COUNT) to the nearest pressed arc of each ring at an instant."""
+        if instant not in self._known:
+            self._known[instant] = arcs_apart(self.pressed.on[instant]).astype(np.int16)
+        return self._known[instant]
 
 
 def arcs_within(points: Floats, rings: Rings, distance: Floats) -> Ints:
