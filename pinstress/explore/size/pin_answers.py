@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from math import inf
 from types import MappingProxyType
 
 from assess.diameter_law import section_exponent
@@ -11,7 +12,7 @@ from fea.core.peak import Maximum
 from pinbase.memo import Memo
 from pinstress.analysis.engine import QUICK_TOLERANCE
 from pinstress.analysis.gather.gather import results_of
-from pinstress.analysis.plan import Plan, prepare
+from pinstress.analysis.plan import Plan, needs_fine_cells, prepare
 from pinstress.analysis.remedies.secant import NoSizeError
 from pinstress.analysis.reused_loads import reused_loads
 from pinstress.analysis.solve import judged, solutions
@@ -23,11 +24,14 @@ from pinstress.explore.size.standard_diameters import StandardDiameters
 from pinstress.study.model.tasks import Task
 from pinstress.study.reading.file import Study, raw_study
 from reports.data.results import Results
-from reports.data.unknowns import growth
+from reports.data.unknowns import growth, least_factor
 
 # Cases whose stress is below this share of the largest are solved only until it is decided that
 # they reach the factor
 COUNTING_SHARE = 0.5
+# The least factor of a case that does not count, over the required one, from which rough cells of
+# contact decide it: surface stress on them is wrong by up to 50 % (pinstress.analysis.scaled)
+CLEAR_RATIO = 3.0
 
 NO_GROWTH: Mapping[str, tuple[float, float]] = MappingProxyType({})
 
@@ -150,8 +154,19 @@ class SizedStudy:
         plan, outcomes = answer.solution.plan, answer.solution.outcomes
         decide = replace(plan, requirement=replace(plan.requirement, goal="decide"))
         left = plan.tasks[len(outcomes) :]
-        others = [judged(decide, task, tell, self.memo) for task in left]
+        others = [self._decided(decide, task, tell) for task in left]
         return self._full(answer.trial.scale, plan, [*outcomes, *others])
+
+    def _decided(self, plan: Plan, task: Task, tell: Tell) -> PinOutcome:
+        """Return the outcome of cases that do not count, on rough cells of contact if these leave
+        no doubt.
+        """
+        if task.lugs and not needs_fine_cells(task):
+            rough = replace(plan, requirement=replace(plan.requirement, cells="rough"))
+            outcome = judged(rough, task, tell, self.memo)
+            if all(least_factor(x) >= CLEAR_RATIO * (x.required or inf) for x in outcome.rows):
+                return outcome
+        return judged(plan, task, tell, self.memo)
 
     def _full(self, scale: float, plan: Plan, outcomes: list[PinOutcome]) -> PinAnswer:
         rows = [row for outcome in outcomes for row in outcome.rows]

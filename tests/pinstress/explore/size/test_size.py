@@ -8,6 +8,7 @@ import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -15,12 +16,15 @@ from hypothesis import strategies as st
 
 from assess.judgement import SAFE
 from fea.harmonic.evaluate import SECTION_MESHES
-from pinstress.analysis.plan import prepare
+from pinstress import study_from
+from pinstress.analysis.plan import Plan, prepare
 from pinstress.analysis.remedies.secant import FACTOR_TOLERANCE, MAX_TRIALS, NoSizeError, smallest
 from pinstress.analysis.results import run
+from pinstress.analysis.solve import judged
+from pinstress.analysis.stored import PinOutcome
 from pinstress.cli.commands import run_command_line
 from pinstress.explore.size.judged_pin import JudgedPin
-from pinstress.explore.size.pin_answers import PinAnswer, SizedStudy, Tell
+from pinstress.explore.size.pin_answers import CLEAR_RATIO, PinAnswer, SizedStudy, Tell
 from pinstress.explore.size.scaled_study import moved, resized_study
 from pinstress.explore.size.section_law import Accuracy
 from pinstress.explore.size.size_pin import SizingGoal, SizingResult, size_pin
@@ -31,6 +35,8 @@ from pinstress.study.reading.file import load_study, parse_study
 from pinstress.study.schema.units import UNIT_SYSTEMS
 from reports.data.decision import factor_ends
 from tests.conftest import ROOT
+from tests.pinstress.analysis.test_scaled import STUDY as THREE_LUGS
+from tests.pinstress.analysis.test_scaled import TWO_CASES
 from tests.support.described import describe
 from tests.support.each import each
 from tests.support.pins.studies import resized_text
@@ -407,3 +413,25 @@ def test_cases_that_do_not_count_are_solved_for_the_size_alone(
     factors = dict(result.judged.cases)
     assert 20.0 <= factors["landing"] <= 20.0 * (1.0 + FACTOR_TOLERANCE)
     assert factors["light"] == pytest.approx(100.0 * factors["landing"], rel=0.5)  # by a beam
+
+
+@each(("ratio", "cells"), [(1.0, ["rough"]), (0.99, ["rough", None])])
+def test_rough_cells_decide_only_a_case_that_they_leave_no_doubt_about(
+    monkeypatch: pytest.MonkeyPatch, ratio: float, cells: list[str | None]
+) -> None:
+    """A light case in narrow arcs, solved finely, took a third of the verification of a pin."""
+    plan, solved = prepare(study_from(THREE_LUGS + TWO_CASES)), list[str | None]()
+
+    def noted(plan: Plan, *others: Any) -> PinOutcome:
+        solved.append(plan.requirement.cells)
+        return judged(plan, *others)
+
+    sized = SizedStudy(plan, "P", 2.0, {})
+    full = sized.full(1.0, ("pull",), lambda _: None)
+    monkeypatch.setattr("pinstress.explore.size.pin_answers.judged", noted)
+    least = ratio * CLEAR_RATIO * 2.0
+    monkeypatch.setattr("pinstress.explore.size.pin_answers.least_factor", lambda _: least)
+    whole = sized.whole(full, lambda _: None)
+    assert whole.solution is not None
+    _, (light,) = (one.rows for one in whole.solution.outcomes)
+    assert (light.case, light.outcome, solved) == ("light", "safe", cells)
